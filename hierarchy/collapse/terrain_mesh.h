@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/lattice_point.h"
+#include "hierarchy/mesh/grid_point.h"
+#include "hierarchy/mesh/grid_triangles.h"
+#include "hierarchy/mesh/halfedge_mesh.h"
+
+namespace terrane::hierarchy {
+
+/// A position as it is written: the integers, and where they come to lie over the grid.
+struct Place {
+  GridPoint plan;
+  double height_m = 0;  ///< over the curved datum of the SampleField
+  LatticePoint lattice;
+};
+
+enum class VertexKind : std::uint8_t {
+  kInterior,
+  kOutline,  ///< on the edge of the valid data; may slide along straight stretches of it
+  kLocked,   ///< on a seam, a tile corner, or where two holes touch: stays
+};
+
+struct TerrainVertex {
+  Place place;
+  VertexKind kind = VertexKind::kInterior;
+  SampleId sample;  ///< the sample that an outline or locked vertex is; {-1, -1} inside
+};
+
+struct TerrainMesh {
+  std::vector<TerrainVertex> vertices;
+  std::vector<Corners> triangles;  ///< counter-clockwise in GridPoint's plane
+};
+
+/// Rounds places to the written lattice.
+class Placer {
+ public:
+  virtual ~Placer() = default;
+
+  /// The written place nearest to a wished one.
+  virtual Place place(GridPoint plan, double height_m) const = 0;
+
+  /// Is the straight edge between two written places near enough to the straight line between them
+  /// on the grid, so that samples on that line count as covered?
+  virtual bool is_straight(const Place& a, const Place& b) const = 0;
+};
+
+}  // namespace terrane::hierarchy

@@ -1,0 +1,233 @@
+#include "hierarchy/mesh/halfedge_mesh.h"
+
+#include <algorithm>
+#include <cassert>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "core/errors.h"
+
+namespace terrane::hierarchy {
+namespace {
+
+struct DirectedEdge {
+  std::uint32_t low, high;
+  HalfedgeId halfedge;
+
+  bool operator<(const DirectedEdge& other) const {
+    return std::tie(low, high, halfedge) < std::tie(other.low, other.high, other.halfedge);
+  }
+  bool same_edge(const DirectedEdge& other) const {
+    return low == other.low && high == other.high;
+  }
+};
+
+void check_corners(std::span<const Corners> triangles, std::uint32_t vertex_count) {
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto [a, b, c] = triangles[t];
+    if (a == b || b == c || c == a) {
+      throw TopologyError(fmt::format("triangle {}: repeats a corner ({}, {}, {})", t, a, b, c));
+    }
+    if (std::max({a, b, c}) >= vertex_count) {
+      throw TopologyError(fmt::format("triangle {}: names vertex {} of {}", t,
+                                      std::max({a, b, c}), vertex_count));
+    }
+  }
+}
+
+}  // namespace
+
+HalfedgeMesh::HalfedgeMesh(std::uint32_t vertex_count, std::span<const Corners> triangles)
+    : vertex_count_(vertex_count),
+      live_triangles_(static_cast<std::uint32_t>(triangles.size())),
+      start_(triangles.size() * 3),
+      opposite_(triangles.size() * 3, kNoHalfedge),
+      live_(triangles.size(), 1),
+      outgoing_(vertex_count, kNoHalfedge),
+      origin_(vertex_count),
+      split_(vertex_count, false) {
+  check_corners(triangles, vertex_count);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      start_[halfedge(TriangleId{t}, k)] = VertexId{triangles[t][k]};
+    }
+  }
+  for (std::uint32_t v = 0; v < vertex_count; ++v) origin_[VertexId{v}] = v;
+  pair_edges();
+  split_fans();
+  close_boundaries();
+  count_valences();
+}
+
+void HalfedgeMesh::pair_edges() {
+  std::vector<DirectedEdge> edges;
+  edges.reserve(start_.size());
+  for (std::uint32_t i = 0; i < start_.size(); ++i) {
+    const HalfedgeId h{i};
+    const auto [low, high] = std::minmax(static_cast<std::uint32_t>(start(h)),
+                                         static_cast<std::uint32_t>(end(h)));
+    edges.push_back({low, high, h});
+  }
+  std::sort(edges.begin(), edges.end());
+
+  for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+    const DirectedEdge& a = edges[i];
+    const DirectedEdge& b = edges[i + 1];
+    if (!a.same_edge(b)) continue;
+    const bool third = i + 2 < edges.size() && b.same_edge(edges[i + 2]);
+    if (third || start(a.halfedge) == start(b.halfedge)) {
+      throw TopologyError(fmt::format(
+          "edge {}-{}: has more than two triangles, or two that do not agree in orientation", a.low,
+          a.high));
+    }
+    opposite_[a.halfedge] = b.halfedge;
+    opposite_[b.halfedge] = a.halfedge;
+    ++i;
+  }
+}
+
+void HalfedgeMesh::split_fans() {
+  std::vector<bool> claimed(start_.size(), false);
+  for (std::uint32_t i = 0; i < start_.size(); ++i) {
+    if (!claimed[i]) claim_fan(HalfedgeId{i}, claimed);
+  }
+}
+
+void HalfedgeMesh::claim_fan(HalfedgeId first, std::vector<bool>& claimed) {
+  // clockwise to the boundary, if there is one: the fan is then open and begins there
+  for (HalfedgeId h = first; opposite_[h] != kNoHalfedge;) {
+    h = next(opposite_[h]);
+    if (h == first) break;
+    if (opposite_[h] == kNoHalfedge) {
+      first = h;
+      break;
+    }
+  }
+  VertexId vertex = start(first);
+  if (outgoing_[vertex] != kNoHalfedge) {
+    split_[origin_[vertex]] = true;
+    origin_.push_back(origin_[vertex]);
+    outgoing_.push_back(kNoHalfedge);
+    vertex = VertexId{vertex_count_++};
+  }
+  outgoing_[vertex] = first;
+  for (HalfedgeId h = first;;) {
+    claimed[index(h)] = true;
+    start_[h] = vertex;
+    h = opposite_[prev(h)];
+    if (h == kNoHalfedge || h == first) return;
+  }
+}
+
+void HalfedgeMesh::close_boundaries() {
+  const auto given = static_cast<std::uint32_t>(start_.size());
+  for (std::uint32_t i = 0; i < given; ++i) {
+    if (opposite_[HalfedgeId{i}] == kNoHalfedge) close_loop(HalfedgeId{i});
+  }
+}
+
+HalfedgeId HalfedgeMesh::next_boundary(HalfedgeId h) const {
+  h = next(h);
+  while (opposite_[h] != kNoHalfedge) h = next(opposite_[h]);
+  return h;
+}
+
+/// Adds the fan of ghost triangles (end, start, infinity) over the boundary loop of first.
+void HalfedgeMesh::close_loop(HalfedgeId first) {
+  const VertexId infinity{static_cast<std::uint32_t>(outgoing_.size())};
+  std::vector<HalfedgeId> loop;
+  HalfedgeId h = first;
+  do {
+    loop.push_back(h);
+    h = next_boundary(h);
+  } while (h != first);
+
+  const std::uint32_t first_ghost = triangle_count();
+  for (const HalfedgeId side : loop) {
+    start_.push_back(end(side));
+    start_.push_back(start(side));
+    start_.push_back(infinity);
+    live_.push_back(1);
+    for (int k = 0; k < 3; ++k) opposite_.push_back(kNoHalfedge);
+  }
+  const auto count = static_cast<std::uint32_t>(loop.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const TriangleId ghost{first_ghost + i};
+    const TriangleId after{first_ghost + (i + 1) % count};
+    opposite_[loop[i]] = halfedge(ghost, 0);
+    opposite_[halfedge(ghost, 0)] = loop[i];
+    // the loop runs on from end(loop[i]), where this ghost's side from infinity ends
+    opposite_[halfedge(ghost, 2)] = halfedge(after, 1);
+    opposite_[halfedge(after, 1)] = halfedge(ghost, 2);
+  }
+  outgoing_.push_back(halfedge(TriangleId{first_ghost}, 2));
+  origin_.push_back(static_cast<std::uint32_t>(infinity));
+}
+
+void HalfedgeMesh::count_valences() {
+  valence_ = IdVector<VertexId, std::uint32_t>(outgoing_.size(), 0);
+  for (const VertexId v : start_) ++valence_[v];
+}
+
+bool HalfedgeMesh::is_ghost(TriangleId t) const {
+  return is_ghost(start_[halfedge(t, 0)]) || is_ghost(start_[halfedge(t, 1)]) ||
+         is_ghost(start_[halfedge(t, 2)]);
+}
+
+bool HalfedgeMesh::is_boundary(VertexId v) const {
+  const HalfedgeId first = outgoing(v);
+  if (first == kNoHalfedge) return false;
+  HalfedgeId h = first;
+  do {
+    if (is_ghost(end(h))) return true;
+    h = rotate(h);
+  } while (h != first);
+  return false;
+}
+
+void HalfedgeMesh::kill(TriangleId t) {
+  assert(is_live(t));
+  if (!is_ghost(t)) --live_triangles_;
+  live_[t] = 0;
+}
+
+void HalfedgeMesh::collapse(std::span<const HalfedgeId> spokes, std::span<const HalfedgeId> dying,
+                            VertexId kept) {
+  const bool is_triangle = dying.size() == 3;
+  std::uint32_t valence = 0;
+  for (const HalfedgeId h : dying) valence += valence_[start(h)];
+  if (is_triangle) kill(triangle(opposite(dying[0])));
+
+  for (const HalfedgeId h : dying) {
+    const HalfedgeId out = opposite(next(h));
+    const HalfedgeId in = opposite(prev(h));
+    const VertexId apex_vertex = apex(h);
+    opposite_[out] = in;
+    opposite_[in] = out;
+    outgoing_[apex_vertex] = out;
+    --valence_[apex_vertex];
+  }
+  for (const HalfedgeId h : dying) kill(triangle(h));
+  for (const HalfedgeId h : dying) outgoing_[start(h)] = kNoHalfedge;
+  for (const HalfedgeId h : spokes) start_[h] = kept;
+  outgoing_[kept] = spokes[0];
+  valence_[kept] = valence - (is_triangle ? 9 : 4);
+}
+
+std::vector<Corners> HalfedgeMesh::triangles() const {
+  std::vector<Corners> result;
+  result.reserve(live_triangles_);
+  for (std::uint32_t i = 0; i < triangle_count(); ++i) {
+    const TriangleId t{i};
+    if (!is_live(t) || is_ghost(t)) continue;
+    Corners corners;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      corners[k] = static_cast<std::uint32_t>(start_[halfedge(t, k)]);
+    }
+    result.push_back(corners);
+  }
+  return result;
+}
+
+}  // namespace terrane::hierarchy

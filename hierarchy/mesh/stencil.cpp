@@ -1,0 +1,80 @@
+#include "hierarchy/mesh/stencil.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace terrane::hierarchy {
+namespace {
+
+// 4 and not 3: a drop to 3 makes a cycle (P1, section 3.2)
+constexpr std::uint32_t kSmallestApexValence = 5;
+
+// an edge collapse may leave valence 3: the star of such a vertex is a plain subdivided triangle,
+// and refusing it cost 3 % more triangles on terrain
+constexpr std::uint32_t kSmallestApexValenceOfEdge = 4;
+
+}  // namespace
+
+StencilWalker::StencilWalker(const HalfedgeMesh& mesh) : mesh_(mesh) {}
+
+Collapsibility StencilWalker::around_triangle(TriangleId triangle, Stencil& stencil) {
+  stencil.polygon.clear();
+  stencil.spokes.clear();
+  stencil.core_size = 3;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const HalfedgeId side = HalfedgeMesh::halfedge(triangle, k);
+    stencil.dying[k] = mesh_.opposite(side);
+    stencil.core[k] = mesh_.start(side);
+    if (mesh_.valence(stencil.core[k]) <= 3) return Collapsibility::kCyclic;
+  }
+  for (const HalfedgeId h : stencil.dying) {
+    const VertexId apex = mesh_.apex(h);
+    if (mesh_.valence(apex) < (mesh_.is_ghost(apex) ? 4U : kSmallestApexValence)) {
+      return Collapsibility::kValence;
+    }
+  }
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    walk(stencil.dying[k], HalfedgeMesh::triangle(stencil.dying[(k + 1) % 3]), stencil);
+  }
+  return is_simple(stencil) ? Collapsibility::kYes : Collapsibility::kCyclic;
+}
+
+Collapsibility StencilWalker::around_edge(HalfedgeId edge, Stencil& stencil) {
+  const HalfedgeId back = mesh_.opposite(edge);
+  stencil.polygon.clear();
+  stencil.spokes.clear();
+  stencil.core_size = 2;
+  stencil.dying = {edge, back, kNoHalfedge};
+  stencil.core = {mesh_.start(edge), mesh_.start(back), VertexId{}};
+  for (const HalfedgeId h : stencil.dying_span()) {
+    if (mesh_.valence(mesh_.apex(h)) < kSmallestApexValenceOfEdge) return Collapsibility::kValence;
+  }
+  walk(back, HalfedgeMesh::triangle(edge), stencil);
+  walk(edge, HalfedgeMesh::triangle(back), stencil);
+  return stencil.polygon.size() >= 3 && is_simple(stencil) ? Collapsibility::kYes
+                                                           : Collapsibility::kCyclic;
+}
+
+/// Counter-clockwise about start(from_dying), from the dying triangle to the dying triangle `to`.
+void StencilWalker::walk(HalfedgeId from_dying, TriangleId to, Stencil& stencil) const {
+  HalfedgeId spoke = mesh_.rotate(from_dying);
+  while (HalfedgeMesh::triangle(spoke) != to) {
+    stencil.spokes.push_back(spoke);
+    stencil.polygon.push_back(mesh_.end(spoke));
+    spoke = mesh_.rotate(spoke);
+  }
+}
+
+bool StencilWalker::is_simple(const Stencil& stencil) {
+  seen_.resize(mesh_.vertex_count(), 0);
+  ++stamp_;
+  int ghosts = 0;
+  const auto is_first_visit = [&](VertexId v) {
+    if (mesh_.is_ghost(v)) return ++ghosts == 1;  // twice, or two loops: type 4 of P1
+    return std::exchange(seen_[index(v)], stamp_) != stamp_;
+  };
+  return std::ranges::all_of(stencil.core_span(), is_first_visit) &&
+         std::ranges::all_of(stencil.polygon, is_first_visit);
+}
+
+}  // namespace terrane::hierarchy
