@@ -1,6 +1,7 @@
 # Every third-party library, found once. All are Debian packages; scripts/setup installs them.
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(fmt REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(GDAL REQUIRED)

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+namespace terrane::viewer {
+
+/// One file of the web viewer.
+struct ViewerFile {
+  std::string_view path;  ///< relative to the output folder, with '/'
+  std::string_view content;
+};
+
+/// The web viewer that is part of this binary; empty if it was built without (TERRANE_WEB=OFF).
+std::span<const ViewerFile> viewer_files();
+
+/// Writes viewer_files() below a folder, which is made if it is missing. Each file gets a
+/// temporary name first and is then renamed, so that none is ever half-written; a file that holds
+/// the same content already is left alone.
+///
+/// \throws OutputError if a file cannot be written.
+void write_viewer(const std::filesystem::path& out);
+
+}  // namespace terrane::viewer
