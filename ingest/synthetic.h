@@ -15,7 +15,7 @@ bool is_synthetic(const std::string& source);
 /// | shape | heights |
 /// |---|---|
 /// | caldera | a ring of mountains over fractal hills; inside, a flat lake with an island |
-/// | plane | slope_x * east + slope_y * north (metres per metre; 0.1 and 0.05) |
+/// | plane | 0.1 * metres east + 0.05 * metres north of sample (0, 0) |
 /// | flat | height (100 m) |
 ///
 /// | key | meaning |

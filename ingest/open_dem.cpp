@@ -1,0 +1,68 @@
+#include <cpl_conv.h>
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "core/errors.h"
+#include "ingest/dem.h"
+#include "ingest/grid_place.h"
+#include "ingest/height_conversion.h"
+#include "ingest/mosaic.h"
+#include "ingest/raster_file.h"
+#include "ingest/synthetic.h"
+
+namespace terrane::ingest {
+namespace {
+
+std::string name_of(const std::vector<std::string>& sources) {
+  const std::string first = CPLGetFilename(sources.front().c_str());
+  return sources.size() == 1 ? first : fmt::format("{} and {} more", first, sources.size() - 1);
+}
+
+bool wants_every_value(const OpenOptions& options) { return options.nodata == "none"; }
+
+void add_suspects(std::vector<SuspectHeight>& suspects, const RasterFacts& facts) {
+  for (SuspectHeight& suspect : suspects_of(facts.conversion)) {
+    suspects.push_back(std::move(suspect));
+  }
+}
+
+std::unique_ptr<Dem> open_rasters(const std::vector<std::string>& sources,
+                                  const OpenOptions& options, Progress& progress) {
+  auto heights = std::make_unique<Mosaic>(sources, options);
+  const RasterFacts& first = heights->files().front()->facts();
+  std::vector<SuspectHeight> suspects;
+  if (!wants_every_value(options)) {
+    for (const auto& file : heights->files()) add_suspects(suspects, file->facts());
+  }
+  DemDescription description = first.description;
+  description.files = sources;
+  const std::string name = name_of(sources);
+  auto place = place_grid(name, heights->shape(), heights->geotransform(), first.crs, options.crs,
+                          description, progress);
+  return std::make_unique<Dem>(name, std::move(description), std::move(suspects),
+                               std::move(heights), std::move(place));
+}
+
+}  // namespace
+
+Dem::Dem(std::string name, DemDescription description, std::vector<SuspectHeight> suspects,
+         std::unique_ptr<HeightSource> heights, std::unique_ptr<Georeference> place)
+    : name_(std::move(name)),
+      description_(std::move(description)),
+      suspects_(std::move(suspects)),
+      heights_(std::move(heights)),
+      place_(std::move(place)) {}
+
+std::unique_ptr<Dem> open_dem(const std::vector<std::string>& sources, const OpenOptions& options,
+                              Progress& progress) {
+  if (sources.empty()) throw InputError("no DEM is given. Name at least one raster file");
+  for (const std::string& source : sources) {
+    if (!is_synthetic(source)) continue;
+    if (sources.size() == 1) return open_synthetic_dem(source);
+    throw InputError(fmt::format("{}: is synthetic and makes no mosaic. Give it alone", source));
+  }
+  return open_rasters(sources, options, progress);
+}
+
+}  // namespace terrane::ingest
