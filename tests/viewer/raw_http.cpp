@@ -29,15 +29,20 @@ int connect_to(int port) {
   return descriptor;
 }
 
-std::string exchange(int descriptor, const std::string& request) {
+std::string exchange(int descriptor, const std::string& request, bool until_closed) {
   std::string answer;
   ::send(descriptor, request.data(), request.size(), MSG_NOSIGNAL);
   char buffer[4096];
   ssize_t got = 0;
   while ((got = ::recv(descriptor, buffer, sizeof buffer, 0)) > 0) {
     answer.append(buffer, static_cast<std::size_t>(got));
+    if (!until_closed && answer.find("\r\n") != std::string::npos) break;
   }
   return answer;
+}
+
+int status_in(const std::string& status_line) {
+  return std::stoi(status_line.substr(status_line.find(' ') + 1));
 }
 
 std::pair<std::string, std::string> split_header(const std::string& line) {
@@ -52,7 +57,7 @@ std::pair<std::string, std::string> split_header(const std::string& line) {
 
 RawAnswer send_raw(int port, const std::string& request) {
   const int descriptor = connect_to(port);
-  const std::string received = exchange(descriptor, request);
+  const std::string received = exchange(descriptor, request, /*until_closed=*/true);
   ::close(descriptor);
 
   RawAnswer answer;
@@ -61,10 +66,17 @@ RawAnswer send_raw(int port, const std::string& request) {
   std::istringstream head(received.substr(0, head_end));
   std::string line;
   std::getline(head, line);
-  answer.status = std::stoi(line.substr(line.find(' ') + 1));
+  answer.status = status_in(line);
   while (std::getline(head, line)) answer.headers.insert(split_header(line));
   answer.body = received.substr(head_end + 4);
   return answer;
+}
+
+int status_of_raw(int port, const std::string& request) {
+  const int descriptor = connect_to(port);
+  const std::string received = exchange(descriptor, request, /*until_closed=*/false);
+  ::close(descriptor);
+  return received.empty() ? 0 : status_in(received);
 }
 
 RawAnswer request_raw(int port, const std::string& method, const std::string& target,
