@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 namespace terrane::ingest {
@@ -30,9 +29,7 @@ Owned<PJ_CONTEXT> quiet_offline_context() {
   return context;
 }
 
-struct LonLatBox {
-  double west_deg, south_deg, east_deg, north_deg;
-};
+constexpr double kNowhere = std::numeric_limits<double>::infinity();
 
 double wrapped_deg(double longitude_deg) { return std::remainder(longitude_deg, 360.0); }
 
@@ -40,34 +37,42 @@ bool is_finite(const LonLat& place) {
   return std::isfinite(place.longitude_deg) && std::isfinite(place.latitude_deg);
 }
 
-// east of west even across the date line, where it then exceeds 180
-LonLatBox box_of(const std::vector<LonLat>& places) {
-  const double middle_deg = places[places.size() / 2].longitude_deg;
-  LonLatBox box{360, 90, -360, -90};
+// a geographic CRS passes any number on: metres taken for degrees must not become places, but a
+// grid that starts at a pole may miss it by a rounding
+LonLat checked(double longitude_deg, double latitude_deg) {
+  if (std::abs(latitude_deg) > 90 + 1e-6 || !std::isfinite(longitude_deg))
+    return {kNowhere, kNowhere};
+  return {wrapped_deg(longitude_deg), std::clamp(latitude_deg, -90.0, 90.0)};
+}
+
+// smaller longitude in the east than in the west where it crosses the date line, as PROJ wants it
+DatumShift::Area area_of(const std::vector<LonLat>& places) {
+  const double middle_deg = std::find_if(places.begin(), places.end(), is_finite)->longitude_deg;
+  DatumShift::Area area{360, 90, -360, -90};
   for (const LonLat& place : places) {
+    if (!is_finite(place)) continue;
     const double east_deg = wrapped_deg(place.longitude_deg - middle_deg);
-    box.west_deg = std::min(box.west_deg, east_deg);
-    box.east_deg = std::max(box.east_deg, east_deg);
-    box.south_deg = std::min(box.south_deg, place.latitude_deg);
-    box.north_deg = std::max(box.north_deg, place.latitude_deg);
+    area.west_deg = std::min(area.west_deg, east_deg);
+    area.east_deg = std::max(area.east_deg, east_deg);
+    area.south_deg = std::min(area.south_deg, place.latitude_deg);
+    area.north_deg = std::max(area.north_deg, place.latitude_deg);
   }
-  box.west_deg = wrapped_deg(box.west_deg + middle_deg);
-  box.east_deg = wrapped_deg(box.east_deg + middle_deg);
-  return box;
+  area.west_deg = wrapped_deg(area.west_deg + middle_deg);
+  area.east_deg = wrapped_deg(area.east_deg + middle_deg);
+  return area;
 }
 
 Owned<PJ_OBJ_LIST> list_operations(PJ_CONTEXT* context, const PJ* crs,
-                                   const std::optional<LonLatBox>& area) {
+                                   const DatumShift::Area* area) {
   const Owned<PJ> wgs84(proj_create(context, "EPSG:4326"));
   const Owned<PJ_OPERATION_FACTORY_CONTEXT> factory(
       proj_create_operation_factory_context(context, nullptr));
   if (area) {
-    proj_operation_factory_context_set_area_of_interest(context, factory.get(), area->west_deg,
-                                                        area->south_deg, area->east_deg,
-                                                        area->north_deg);
+    proj_operation_factory_context_set_area_of_interest(
+        context, factory.get(), area->west_deg, area->south_deg, area->east_deg, area->north_deg);
   }
-  proj_operation_factory_context_set_spatial_criterion(
-      context, factory.get(), PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);
+  proj_operation_factory_context_set_spatial_criterion(context, factory.get(),
+                                                       PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);
   return Owned<PJ_OBJ_LIST>(proj_create_operations(context, crs, wgs84.get(), factory.get()));
 }
 
@@ -77,13 +82,14 @@ struct DatumShift::Operation {
   Owned<PJ_CONTEXT> context;  // before the object, which must not outlive it
   Owned<PJ> object;
 
-  Operation clone() const {
-    Owned<PJ_CONTEXT> own_context = quiet_offline_context();
-    Owned<PJ> copy(proj_clone(own_context.get(), object.get()));
-    return {std::move(own_context), std::move(copy)};
+  static Operation copy_of(const PJ& object) {
+    Owned<PJ_CONTEXT> context = quiet_offline_context();
+    Owned<PJ> copy(proj_clone(context.get(), &object));
+    return {std::move(context), std::move(copy)};
   }
 
-  std::vector<LonLat> apply(std::array<int, 2> axes, std::span<const PlanPosition> positions) const {
+  std::vector<LonLat> apply(std::array<int, 2> axes,
+                            std::span<const PlanPosition> positions) const {
     std::vector<LonLat> places;
     places.reserve(positions.size());
     for (const PlanPosition& position : positions) {
@@ -93,7 +99,7 @@ struct DatumShift::Operation {
       proj_errno_reset(object.get());
       const PJ_COORD out = proj_trans(object.get(), PJ_FWD, in);
       // EPSG:4326 has latitude first
-      places.push_back({wrapped_deg(out.v[1]), out.v[0]});
+      places.push_back(checked(out.v[1], out.v[0]));
     }
     return places;
   }
@@ -110,35 +116,42 @@ DatumShift::DatumShift(std::unique_ptr<Operation> operation, std::array<int, 2> 
 
 DatumShift::~DatumShift() = default;
 
+std::unique_ptr<DatumShift> DatumShift::find_in(const std::string& crs_wkt, std::array<int, 2> axes,
+                                                std::span<const PlanPosition> probes,
+                                                const Area* area) {
+  const Owned<PJ_CONTEXT> context = quiet_offline_context();
+  const Owned<PJ> crs(proj_create(context.get(), crs_wkt.c_str()));
+  if (!crs) return nullptr;
+  const Owned<PJ_OBJ_LIST> list = list_operations(context.get(), crs.get(), area);
+  const int count = list ? proj_list_get_count(list.get()) : 0;
+  std::unique_ptr<Operation> best;
+  std::ptrdiff_t most_placed = 0;
+  for (int i = 0; i < count && most_placed < std::ssize(probes); ++i) {
+    const Owned<PJ> candidate(proj_list_get(context.get(), list.get(), i));
+    if (!proj_coordoperation_is_instantiable(context.get(), candidate.get())) continue;
+    auto operation = std::make_unique<Operation>(Operation::copy_of(*candidate));
+    const std::vector<LonLat> places = operation->apply(axes, probes);
+    const auto placed = std::count_if(places.begin(), places.end(), is_finite);
+    if (placed <= most_placed) continue;
+    most_placed = placed;
+    best = std::move(operation);
+  }
+  if (!best) return nullptr;
+  return std::unique_ptr<DatumShift>(new DatumShift(std::move(best), axes));
+}
+
 std::unique_ptr<DatumShift> DatumShift::find(const std::string& crs_wkt, std::array<int, 2> axes,
                                              std::span<const PlanPosition> probes) {
-  const auto find_in = [&](const std::optional<LonLatBox>& area) -> std::unique_ptr<DatumShift> {
-    Owned<PJ_CONTEXT> context = quiet_offline_context();
-    const Owned<PJ> crs(proj_create(context.get(), crs_wkt.c_str()));
-    if (!crs) return nullptr;
-    const Owned<PJ_OBJ_LIST> list = list_operations(context.get(), crs.get(), area);
-    const int count = list ? proj_list_get_count(list.get()) : 0;
-    for (int i = 0; i < count; ++i) {
-      Owned<PJ> candidate(proj_list_get(context.get(), list.get(), i));
-      if (!proj_coordoperation_is_instantiable(context.get(), candidate.get())) continue;
-      auto operation = std::make_unique<Operation>(
-          Operation{quiet_offline_context(), nullptr});
-      operation->object.reset(proj_clone(operation->context.get(), candidate.get()));
-      const std::vector<LonLat> places = operation->apply(axes, probes);
-      if (!std::all_of(places.begin(), places.end(), is_finite)) continue;
-      return std::unique_ptr<DatumShift>(new DatumShift(std::move(operation), axes));
-    }
-    return nullptr;
-  };
   // any operation tells roughly where on Earth the data set lies; the best one there is wanted
-  const std::unique_ptr<DatumShift> rough = find_in(std::nullopt);
+  const std::unique_ptr<DatumShift> rough = find_in(crs_wkt, axes, probes, nullptr);
   if (!rough) return nullptr;
-  return find_in(box_of(rough->to_lon_lat(probes)));
+  const Area area = area_of(rough->to_lon_lat(probes));
+  return find_in(crs_wkt, axes, probes, &area);
 }
 
 std::unique_ptr<DatumShift::Operation> DatumShift::borrow() const {
   const std::lock_guard lock(mutex_);
-  if (idle_.empty()) return std::make_unique<Operation>(original_->clone());
+  if (idle_.empty()) return std::make_unique<Operation>(Operation::copy_of(*original_->object));
   std::unique_ptr<Operation> operation = std::move(idle_.back());
   idle_.pop_back();
   return operation;

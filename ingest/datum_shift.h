@@ -19,14 +19,24 @@ namespace terrane::ingest {
 /// network is never asked).
 class DatumShift {
  public:
-  /// Finds the best operation that can transform each of \p probes.
+  /// A rectangle of longitudes and latitudes; east is below west across the date line.
+  struct Area {
+    double west_deg;
+    double south_deg;
+    double east_deg;
+    double north_deg;
+  };
+
+  /// Finds the best operation that can transform all of \p probes, else the one that can most.
   ///
   /// \param crs_wkt  two-dimensional.
-  /// \param axes     axes[0] and axes[1]: which axis of the CRS (1 or 2; negative: reversed) x and y
+  /// \param axes     axes[0] and axes[1]: which axis of the CRS (1 or 2; negative: reversed) x and
+  /// y
   ///                 of a plan position are, as GDAL's axis mapping has it.
   /// \param probes   positions spread over the data set, in units of the CRS.
-  /// \return null if there is none: the CRS has no known place on Earth, or the probes lie outside
-  ///         of where it is defined.
+  /// \return null if there is none: the CRS has no known place on Earth, or no probe lies where it
+  /// is
+  ///         defined.
   static std::unique_ptr<DatumShift> find(const std::string& crs_wkt, std::array<int, 2> axes,
                                           std::span<const PlanPosition> probes);
 
@@ -46,6 +56,9 @@ class DatumShift {
 
  private:
   struct Operation;
+  static std::unique_ptr<DatumShift> find_in(const std::string& crs_wkt, std::array<int, 2> axes,
+                                             std::span<const PlanPosition> probes,
+                                             const Area* area);
   explicit DatumShift(std::unique_ptr<Operation> operation, std::array<int, 2> axes);
 
   std::unique_ptr<Operation> borrow() const;

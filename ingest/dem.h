@@ -32,12 +32,12 @@ struct OpenOptions {
 
 /// What a DEM is made of, to show to its user.
 struct DemDescription {
-  std::vector<std::string> files;    ///< as given to open_dem()
-  std::string format;                ///< GDAL's name of it, or "synthetic"
-  int band = 1;                      ///< the one with the heights, from 1
+  std::vector<std::string> files;  ///< as given to open_dem()
+  std::string format;              ///< GDAL's name of it, or "synthetic"
+  int band = 1;                    ///< the one with the heights, from 1
   int band_count = 1;
-  std::string data_type;             ///< as stored: "Int16", "Float32", ...
-  double scale = 1;                  ///< height in the file's unit = stored * scale + offset
+  std::string data_type;  ///< as stored: "Int16", "Float32", ...
+  double scale = 1;       ///< height in the file's unit = stored * scale + offset
   double offset = 0;
   VerticalUnit vertical_unit = VerticalUnit::kMetre;
   std::string vertical_unit_origin;  ///< who said so: "--vertical-unit", "the band", ...
@@ -54,8 +54,8 @@ struct DemDescription {
 
 /// A height that a value gets which usually means "no data" but is not declared as such.
 struct SuspectHeight {
-  std::string stored;           ///< the value in the file, as `--nodata` takes it
-  float height_m = 0;           ///< what it is read as
+  std::string stored;                  ///< the value in the file, as `--nodata` takes it
+  float height_m = 0;                  ///< what it is read as
   bool and_everything_beyond = false;  ///< larger magnitudes of the same sign are suspect too
 };
 
@@ -98,6 +98,7 @@ class Dem {
 /// \param sources  at least one: paths, or anything else that GDAL opens.
 /// \throws InputError if a file cannot be opened, is no DEM, or does not fit the others; if the
 ///         CRS is not known; if a band has to be named.
+/// \throws ConfigError if options.nodata is not what it may be.
 std::unique_ptr<Dem> open_dem(const std::vector<std::string>& sources, const OpenOptions& options,
                               Progress& progress);
 

@@ -11,15 +11,16 @@ void refuse_unusable(GDALDataset& dataset, GDALRasterBand& band, const std::stri
   const int columns = dataset.GetRasterXSize();
   const int rows = dataset.GetRasterYSize();
   if (columns < 2 || rows < 2) {
-    throw InputError(fmt::format("{}: has {} x {} samples, and a terrain needs at least 2 x 2. Give "
-                                 "a larger raster",
-                                 file, columns, rows));
+    throw InputError(
+        fmt::format("{}: has {} x {} samples, and a terrain needs at least 2 x 2. Give "
+                    "a larger raster",
+                    file, columns, rows));
   }
   if (GDALDataTypeIsComplex(band.GetRasterDataType())) {
-    throw InputError(fmt::format("{}: band {} holds complex numbers ({}), not heights. Pick another "
-                                 "band with --band, or another file",
-                                 file, band.GetBand(),
-                                 GDALGetDataTypeName(band.GetRasterDataType())));
+    throw InputError(
+        fmt::format("{}: band {} holds complex numbers ({}), not heights. Pick another "
+                    "band with --band, or another file",
+                    file, band.GetBand(), GDALGetDataTypeName(band.GetRasterDataType())));
   }
 }
 
@@ -33,9 +34,10 @@ std::optional<ChosenUnit> unit_of_band(GDALRasterBand& band, const std::string& 
   if (word.empty()) return std::nullopt;
   const auto unit = recognise_vertical_unit(word);
   if (unit) return ChosenUnit{*unit, "the band"};
-  throw InputError(fmt::format("{}: cannot tell the unit of heights from '{}'. Say it with "
-                               "--vertical-unit metre, foot or us-survey-foot",
-                               file, word));
+  throw InputError(
+      fmt::format("{}: cannot tell the unit of heights from '{}'. Say it with "
+                  "--vertical-unit metre, foot or us-survey-foot",
+                  file, word));
 }
 
 std::optional<ChosenUnit> unit_of_crs(const OGRSpatialReference& crs, const std::string& file) {
@@ -44,9 +46,10 @@ std::optional<ChosenUnit> unit_of_crs(const OGRSpatialReference& crs, const std:
   const double length_m = crs.GetTargetLinearUnits("VERT_CS", &name);
   const auto unit = recognise_vertical_unit(length_m);
   if (unit) return ChosenUnit{*unit, "the CRS"};
-  throw InputError(fmt::format("{}: its CRS counts heights in '{}'. Say the unit with "
-                               "--vertical-unit metre, foot or us-survey-foot",
-                               file, name));
+  throw InputError(
+      fmt::format("{}: its CRS counts heights in '{}'. Say the unit with "
+                  "--vertical-unit metre, foot or us-survey-foot",
+                  file, name));
 }
 
 ChosenUnit choose_unit(GDALRasterBand& band, const OGRSpatialReference& crs,
@@ -101,9 +104,10 @@ std::optional<Geotransform> geotransform_of(GDALDataset& dataset, const std::str
   if (dataset.GetGeoTransform(t.data()) != CE_None) return std::nullopt;
   // the area of a cell; NaN is not above zero either
   if (std::abs(t[1] * t[5] - t[2] * t[4]) > 0) return t;
-  throw InputError(fmt::format("{}: its geotransform ({}) gives cells no area, so nothing can be "
-                               "placed. Mend it with gdal_edit.py -a_ullr",
-                               file, fmt::join(t, ", ")));
+  throw InputError(
+      fmt::format("{}: its geotransform ({}) gives cells no area, so nothing can be "
+                  "placed. Mend it with gdal_edit.py -a_ullr",
+                  file, fmt::join(t, ", ")));
 }
 
 OGRSpatialReference crs_of(GDALDataset& dataset, const std::string& file,
@@ -116,9 +120,10 @@ OGRSpatialReference crs_of(GDALDataset& dataset, const std::string& file,
   const GdalScope gdal;
   crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   if (crs.SetFromUserInput(options.crs.c_str()) == OGRERR_NONE) return crs;
-  throw InputError(fmt::format("{}: the CRS '{}' is not known ({}). Give --crs a code like "
-                               "EPSG:4326, or WKT",
-                               file, options.crs, gdal.reason()));
+  throw InputError(
+      fmt::format("{}: the CRS '{}' is not known ({}). Give --crs a code like "
+                  "EPSG:4326, or WKT",
+                  file, options.crs, gdal.reason()));
 }
 
 }  // namespace

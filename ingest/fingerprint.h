@@ -9,9 +9,9 @@ namespace terrane::ingest {
 
 /// A 64-bit hash of a sequence of numbers and texts; not safe against forgery.
 ///
-/// Each 64-bit word w changes the state h to mix(h xor w) + 0x9E3779B97F4A7C15, mix being the finalizer of splitmix64
-/// (a bijection, so that two sequences that differ in one word never meet). The result does not
-/// depend on the machine.
+/// Each 64-bit word w changes the state h to mix(h xor w) + 0x9E3779B97F4A7C15, mix being the
+/// finalizer of splitmix64 (a bijection, so that two sequences that differ in one word never meet).
+/// The result does not depend on the machine.
 ///
 /// \par Source
 /// Steele, Lea, Flood: Fast Splittable Pseudorandom Number Generators (2014), and Stafford's
@@ -19,8 +19,8 @@ namespace terrane::ingest {
 class Fingerprint {
  public:
   void add(std::uint64_t word);
-  void add(double number);             ///< its bits
-  void add(std::string_view text);     ///< its length, then its bytes
+  void add(double number);                     ///< its bits
+  void add(std::string_view text);             ///< its length, then its bytes
   void add(std::span<const float> heights_m);  ///< bits; all NaN are one, zeros of both signs too
 
   std::uint64_t value() const { return state_; }

@@ -74,11 +74,11 @@ bool could_be_degrees(const Geotransform& t) {
 
 void note_missing_crs(const std::string& name, const Geotransform& t, bool had_one,
                       Progress& progress) {
-  progress.note(fmt::format(
-      "{}: {}; its plan is taken as local metres. {}", name,
-      had_one ? "its CRS has no known place on Earth" : "says no CRS",
-      could_be_degrees(t) ? "The coordinates look like degrees: try --crs EPSG:4326"
-                          : "Name it with --crs if you know it"));
+  progress.note(fmt::format("{}: {}; its plan is taken as local metres. {}", name,
+                            had_one ? "its CRS gives it no place on Earth" : "says no CRS",
+                            could_be_degrees(t)
+                                ? "The coordinates look like degrees: try --crs EPSG:4326"
+                                : "Name it with --crs if you know it"));
 }
 
 }  // namespace
@@ -104,9 +104,10 @@ std::vector<LonLat> GridPlace::to_lon_lat(std::span<const GridPosition> position
   std::vector<LonLat> places = datum_shift_->to_lon_lat(plan);
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (std::isfinite(places[i].longitude_deg) && std::isfinite(places[i].latitude_deg)) continue;
-    throw InputError(fmt::format("{}: column {}, row {} has no longitude and latitude in its CRS. "
-                                 "Name the right CRS with --crs, or cut the DEM",
-                                 name_, positions[i].column, positions[i].row));
+    throw InputError(
+        fmt::format("{}: column {}, row {} has no longitude and latitude in its CRS. "
+                    "Name the right CRS with --crs, or cut the DEM",
+                    name_, positions[i].column, positions[i].row));
   }
   return places;
 }
@@ -118,9 +119,10 @@ std::unique_ptr<Georeference> place_grid(const std::string& name, GridShape shap
   const GdalScope gdal;
   if (!geotransform) {
     if (!asked_crs.empty()) {
-      throw InputError(fmt::format("{}: has no geotransform, so --crs {} cannot place it. Add one "
-                                   "with gdal_edit.py -a_ullr, or leave --crs away",
-                                   name, asked_crs));
+      throw InputError(
+          fmt::format("{}: has no geotransform, so --crs {} cannot place it. Add one "
+                      "with gdal_edit.py -a_ullr, or leave --crs away",
+                      name, asked_crs));
     }
     progress.note(fmt::format("{}: has no geotransform; cells of 1 x 1 m are assumed", name));
     describe(description, kUnplaced, crs, nullptr);
@@ -135,18 +137,20 @@ std::unique_ptr<Georeference> place_grid(const std::string& name, GridShape shap
     const GridPlace plan(name, *geotransform, "", nullptr);
     if (auto shift = DatumShift::find(wkt, axes, probes_of(plan, shape))) {
       if (shift->is_a_guess()) {
-        progress.note(fmt::format("{}: no datum shift from '{}' to WGS 84 is known; places may be "
-                                  "some 100 m wrong",
-                                  name, crs.GetName()));
+        progress.note(
+            fmt::format("{}: no datum shift from '{}' to WGS 84 is known; places may be "
+                        "some 100 m wrong",
+                        name, crs.GetName()));
       }
       describe(description, *geotransform, crs, shift.get());
       return std::make_unique<GridPlace>(name, *geotransform, wkt, std::move(shift));
     }
   }
   if (!asked_crs.empty()) {
-    throw InputError(fmt::format("{}: the CRS {} cannot place it: its corners have no longitude and "
-                                 "latitude there. Name the right CRS with --crs",
-                                 name, asked_crs));
+    throw InputError(
+        fmt::format("{}: the CRS {} cannot place it: its corners have no longitude and "
+                    "latitude there. Name the right CRS with --crs",
+                    name, asked_crs));
   }
   note_missing_crs(name, *geotransform, has_crs, progress);
   const Geotransform t = in_metres(*geotransform, crs);

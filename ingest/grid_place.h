@@ -18,8 +18,8 @@ namespace terrane::ingest {
 /// A grid placed by an affine map and, with a CRS, on the Earth.
 class GridPlace final : public Georeference {
  public:
-  /// \param corner_transform  of sample corners: sample (c, r) has its centre at (c + 0.5, r + 0.5).
-  /// \param datum_shift       null without a CRS.
+  /// \param corner_transform  of sample corners: sample (c, r) has its centre at (c + 0.5, r +
+  /// 0.5). \param datum_shift       null without a CRS.
   GridPlace(std::string name, const Geotransform& corner_transform, std::string crs_wkt,
             std::unique_ptr<DatumShift> datum_shift);
 

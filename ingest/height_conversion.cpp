@@ -27,9 +27,10 @@ double parse_number(const std::string& text, const std::string& file) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != '\0') {
-    throw InputError(fmt::format("{}: '{}' is no value for --nodata. Give a number, several with "
-                                 "commas between them, or none",
-                                 file, text));
+    throw ConfigError(
+        fmt::format("{}: '{}' is no value for --nodata. Give a number, several with "
+                    "commas between them, or none",
+                    file, text));
   }
   return value;
 }

@@ -21,7 +21,7 @@ struct HeightConversion {
 };
 
 /// Numbers of `--nodata`: one, or several with commas between them; empty for "none".
-/// \throws InputError naming \p file if \p text is anything else.
+/// \throws ConfigError naming \p file if \p text is anything else.
 std::vector<double> parse_nodata(const std::string& text, const std::string& file);
 
 /// The stored value nearest to \p nodata that a Float32 band can hold: files often declare more

@@ -44,8 +44,8 @@ void refuse_unlike(const RasterFile& first, const RasterFile& other) {
   const RasterFacts& a = first.facts();
   const RasterFacts& b = other.facts();
   if (a.description.band_count != b.description.band_count) {
-    refuse(fmt::format("it has {} bands, not {}", b.description.band_count,
-                       a.description.band_count));
+    refuse(
+        fmt::format("it has {} bands, not {}", b.description.band_count, a.description.band_count));
   }
   if (a.crs.IsEmpty() != b.crs.IsEmpty() || (!a.crs.IsEmpty() && !a.crs.IsSame(&b.crs))) {
     const auto name = [](const OGRSpatialReference& crs) {
@@ -81,9 +81,10 @@ Window window_in(const RasterFile& first, const RasterFile& other) {
                 std::abs(far_row - std::round(row) - lines)});
   // NaN is refused too
   if (!(misfit_cells <= kLargestMisfit_cells)) {
-    throw InputError(fmt::format("{}: does not fit {}: its samples lie {:.3g} cells beside the "
-                                 "other's grid. Bring them to one grid with gdalwarp",
-                                 other.file(), first.file(), misfit_cells));
+    throw InputError(
+        fmt::format("{}: does not fit {}: its samples lie {:.3g} cells beside the "
+                    "other's grid. Bring them to one grid with gdalwarp",
+                    other.file(), first.file(), misfit_cells));
   }
   return {std::llround(column), std::llround(row), shape.columns, shape.rows};
 }
@@ -128,8 +129,8 @@ void Mosaic::place_files() {
 
 HeightGrid Mosaic::read(const Window& window) const {
   if (files_.size() == 1) return files_.front()->read(window);
-  HeightGrid grid{window, std::vector<float>(
-                              static_cast<std::size_t>(window.columns * window.rows), kNoHeight)};
+  HeightGrid grid{window, std::vector<float>(static_cast<std::size_t>(window.columns * window.rows),
+                                             kNoHeight)};
   for (std::size_t i = 0; i < files_.size(); ++i) {
     const Window common = intersection(window, windows_[i]);
     if (common.columns <= 0 || common.rows <= 0) continue;

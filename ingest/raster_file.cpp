@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
-#include "ingest/gdal_scope.h"
 
 namespace terrane::ingest {
 namespace {
@@ -21,9 +20,10 @@ GDALDatasetUniquePtr open_dataset(const std::string& file, const GdalScope& gdal
   if (looks_like_a_path(file) && VSIStatL(file.c_str(), &status) != 0) {
     throw InputError(fmt::format("{}: no such file. Check the path", file));
   }
-  throw InputError(fmt::format("{}: not a raster that GDAL can read ({}). `gdalinfo --formats` "
-                               "lists what it can",
-                               file, gdal.reason()));
+  throw InputError(
+      fmt::format("{}: not a raster that GDAL can read ({}). `gdalinfo --formats` "
+                  "lists what it can",
+                  file, gdal.reason()));
 }
 
 // false if GDAL fails
@@ -39,10 +39,11 @@ bool read_samples(GDALRasterBand& band, const Window& window, GDALDataType type,
 
 [[noreturn]] void throw_unreadable(const std::string& file, const Window& window,
                                    const GdalScope& gdal) {
-  throw InputError(fmt::format("{}: cannot read columns {} to {}, rows {} to {} ({}). The file may "
-                               "be cut short or damaged; get it again",
-                               file, window.column, window.column + window.columns - 1, window.row,
-                               window.row + window.rows - 1, gdal.reason()));
+  throw InputError(
+      fmt::format("{}: cannot read columns {} to {}, rows {} to {} ({}). The file may "
+                  "be cut short or damaged; get it again",
+                  file, window.column, window.column + window.columns - 1, window.row,
+                  window.row + window.rows - 1, gdal.reason()));
 }
 
 }  // namespace
@@ -53,8 +54,8 @@ RasterFile::RasterFile(const std::string& file, const OpenOptions& options) : fi
   facts_ = examine_raster(*dataset_, file, options);
 }
 
-GDALRasterBand& RasterFile::open_band() const {
-  if (!dataset_) dataset_ = open_dataset(file_, GdalScope());
+GDALRasterBand& RasterFile::open_band(const GdalScope& gdal) const {
+  if (!dataset_) dataset_ = open_dataset(file_, gdal);
   return *dataset_->GetRasterBand(facts_.description.band);
 }
 
@@ -62,11 +63,12 @@ HeightGrid RasterFile::read(const Window& window) const {
   std::vector<double> stored;
   std::vector<unsigned char> mask;
   {
-    const std::lock_guard lock(mutex_);
     const GdalScope gdal;
-    GDALRasterBand& band = open_band();
+    GDALRasterBand& band = open_band(gdal);
     if (!read_samples(band, window, GDT_Float64, stored)) throw_unreadable(file_, window, gdal);
-    if (facts_.has_mask) mask = read_mask(band, window);
+    if (facts_.has_mask && !read_samples(*band.GetMaskBand(), window, GDT_Byte, mask)) {
+      throw_unreadable(file_, window, gdal);
+    }
   }
   HeightGrid grid{window, std::vector<float>(stored.size())};
   for (std::size_t i = 0; i < stored.size(); ++i) {
@@ -76,18 +78,8 @@ HeightGrid RasterFile::read(const Window& window) const {
   return grid;
 }
 
-std::vector<unsigned char> RasterFile::read_mask(GDALRasterBand& band,
-                                                 const Window& window) const {
-  const GdalScope gdal;
-  std::vector<unsigned char> mask;
-  if (!read_samples(*band.GetMaskBand(), window, GDT_Byte, mask)) {
-    throw_unreadable(file_, window, gdal);
-  }
-  return mask;
-}
-
 void RasterFile::close() const {
-  const std::lock_guard lock(mutex_);
+  const GdalScope gdal;
   dataset_.reset();
 }
 

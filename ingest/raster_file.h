@@ -4,18 +4,19 @@
 #include <ogr_spatialref.h>
 
 #include <array>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/height_grid.h"
 #include "ingest/dem.h"
+#include "ingest/gdal_scope.h"
 #include "ingest/height_conversion.h"
 
 namespace terrane::ingest {
 
-/// GDAL's affine coefficients: x = t[0] + t[1] column + t[2] row, y = t[3] + t[4] column + t[5] row.
+/// GDAL's affine coefficients: x = t[0] + t[1] column + t[2] row, y = t[3] + t[4] column + t[5]
+/// row.
 using Geotransform = std::array<double, 6>;
 
 /// What one file says about itself and its band of heights, options applied.
@@ -23,9 +24,9 @@ struct RasterFacts {
   GridShape shape;
   DemDescription description;  ///< without what belongs to the CRS and the spacing
   HeightConversion conversion;
-  bool has_mask = false;                    ///< a mask or alpha band says where there is no data
-  std::optional<Geotransform> geotransform; ///< of the corners of samples, as GDAL has it
-  OGRSpatialReference crs;                  ///< empty if the file has none
+  bool has_mask = false;                     ///< a mask or alpha band says where there is no data
+  std::optional<Geotransform> geotransform;  ///< of the corners of samples, as GDAL has it
+  OGRSpatialReference crs;                   ///< empty if the file has none
 };
 
 /// Looks at an open file and decides what to read from it.
@@ -41,7 +42,7 @@ GDALRasterBand& choose_band(GDALDataset& dataset, const std::string& file,
 
 /// Heights of one file. Opens it when needed; close() frees its handle until the next read().
 ///
-/// Thread-safe: one thread at a time is inside GDAL, whose data sets are not.
+/// Thread-safe: a GdalScope lets one thread at a time into GDAL, whose data sets are not.
 class RasterFile {
  public:
   /// \throws InputError if the file cannot be opened or is no DEM.
@@ -57,12 +58,10 @@ class RasterFile {
   void close() const;
 
  private:
-  GDALRasterBand& open_band() const;
-  std::vector<unsigned char> read_mask(GDALRasterBand& band, const Window& window) const;
+  GDALRasterBand& open_band(const GdalScope& gdal) const;
 
   std::string file_;
   RasterFacts facts_;
-  mutable std::mutex mutex_;
   mutable GDALDatasetUniquePtr dataset_;
 };
 

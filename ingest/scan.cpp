@@ -112,16 +112,18 @@ void refuse_suspects(const Dem& dem, const std::vector<std::int64_t>& counts) {
     nodata.push_back(stored);
   }
   if (found.empty()) return;
-  throw InputError(fmt::format("{}: {}, which is not declared but looks like 'no data'. Use "
-                               "--nodata {}, or --nodata none to take it as a height",
-                               dem.name(), fmt::join(found, " and "), fmt::join(nodata, ",")));
+  throw InputError(
+      fmt::format("{}: {}, which is not declared but looks like 'no data'. Use "
+                  "--nodata {}, or --nodata none to take it as a height",
+                  dem.name(), fmt::join(found, " and "), fmt::join(nodata, ",")));
 }
 
 void refuse_empty(const Dem& dem, const HeightStatistics& statistics) {
   if (statistics.samples_with_data > 0) return;
-  throw InputError(fmt::format("{}: no sample holds a height (all are no data). Check --nodata and "
-                               "--band, or give another file",
-                               dem.name()));
+  throw InputError(
+      fmt::format("{}: no sample holds a height (all are no data). Check --nodata and "
+                  "--band, or give another file",
+                  dem.name()));
 }
 
 void add_place(const Dem& dem, Fingerprint& fingerprint) {

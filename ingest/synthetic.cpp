@@ -45,14 +45,12 @@ Number parse_value(std::string_view key, std::string_view text, Number least, Nu
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
   if (error == std::errc() && stop == end && value >= least && value <= most) return value;
-  throw InputError(fmt::format("{}: {} is '{}'. Give a number from {} to {}", source, key, text,
-                               least, most));
+  throw InputError(
+      fmt::format("{}: {} is '{}'. Give a number from {} to {}", source, key, text, least, most));
 }
 
 void apply(std::string_view key, std::string_view text, const std::string& source, Recipe& recipe) {
-  const auto side = [&] {
-    return parse_value<std::int64_t>(key, text, 2, 100000, source);
-  };
+  const auto side = [&] { return parse_value<std::int64_t>(key, text, 2, 100000, source); };
   if (key == "size") {
     recipe.columns = recipe.rows = side();
   } else if (key == "columns") {
@@ -66,9 +64,10 @@ void apply(std::string_view key, std::string_view text, const std::string& sourc
   } else if (key == "holes") {
     recipe.holes = parse_value<int>(key, text, 0, 10000, source);
   } else {
-    throw InputError(fmt::format("{}: no key is called '{}'. Use size, columns, rows, spacing, seed "
-                                 "or holes",
-                                 source, key));
+    throw InputError(
+        fmt::format("{}: no key is called '{}'. Use size, columns, rows, spacing, seed "
+                    "or holes",
+                    source, key));
   }
 }
 
@@ -118,8 +117,8 @@ class SyntheticHeights final : public HeightSource {
     grid.heights_m.reserve(static_cast<std::size_t>(window.columns * window.rows));
     for (std::int64_t r = 0; r < window.rows; ++r) {
       for (std::int64_t c = 0; c < window.columns; ++c) {
-        grid.heights_m.push_back(height_m(static_cast<double>(window.column + c),
-                                          static_cast<double>(window.row + r)));
+        grid.heights_m.push_back(
+            height_m(static_cast<double>(window.column + c), static_cast<double>(window.row + r)));
       }
     }
     return grid;

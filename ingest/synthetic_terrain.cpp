@@ -27,8 +27,8 @@ double value_noise(double x, double y, std::uint64_t seed, std::uint64_t octave)
   const auto j = static_cast<std::int64_t>(row);
   const double u = smooth_step(x - column);
   const double v = smooth_step(y - row);
-  const double upper = hashed_fraction(seed, octave, i, j) * (1 - u) +
-                       hashed_fraction(seed, octave, i + 1, j) * u;
+  const double upper =
+      hashed_fraction(seed, octave, i, j) * (1 - u) + hashed_fraction(seed, octave, i + 1, j) * u;
   const double lower = hashed_fraction(seed, octave, i, j + 1) * (1 - u) +
                        hashed_fraction(seed, octave, i + 1, j + 1) * u;
   return 2 * (upper * (1 - v) + lower * v) - 1;

@@ -63,12 +63,11 @@ std::optional<VerticalUnit> parse_vertical_unit(std::string_view word) {
 std::optional<VerticalUnit> recognise_vertical_unit(std::string_view word_in_file) {
   static constexpr std::array<std::string_view, 5> kMetreWords = {"m", "metre", "metres", "meter",
                                                                   "meters"};
-  static constexpr std::array<std::string_view, 5> kFootWords = {"ft", "foot", "feet",
-                                                                 "internationalfoot",
-                                                                 "internationalfeet"};
+  static constexpr std::array<std::string_view, 5> kFootWords = {
+      "ft", "foot", "feet", "internationalfoot", "internationalfeet"};
   static constexpr std::array<std::string_view, 9> kUsFootWords = {
-      "usft",    "ftus",           "footus",           "usfoot",          "usfeet",
-      "sft",     "ussurveyfoot",   "ussurveyfeet",     "surveyfoot"};
+      "usft", "ftus",         "footus",       "usfoot",    "usfeet",
+      "sft",  "ussurveyfoot", "ussurveyfeet", "surveyfoot"};
   const std::string word = letters_of(word_in_file);
   if (is_one_of(word, kMetreWords)) return VerticalUnit::kMetre;
   if (is_one_of(word, kFootWords)) return VerticalUnit::kFoot;

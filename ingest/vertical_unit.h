@@ -17,8 +17,8 @@ std::string_view name_of(VerticalUnit unit);
 /// Reads a word of the command line, exactly as name_of() writes it; nullopt for any other.
 std::optional<VerticalUnit> parse_vertical_unit(std::string_view word);
 
-/// Reads a unit as raster formats spell it ("m", "Metre", "ft", "US survey foot", ...), whatever its
-/// case; nullopt for a unit that is none of the three.
+/// Reads a unit as raster formats spell it ("m", "Metre", "ft", "US survey foot", ...), whatever
+/// its case; nullopt for a unit that is none of the three.
 std::optional<VerticalUnit> recognise_vertical_unit(std::string_view word_in_file);
 
 /// Tells the unit from its length; nullopt unless it is that of one of the three to within 1e-9 m.
