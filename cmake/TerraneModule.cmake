@@ -1,7 +1,9 @@
 # Warnings and checks that every target of ours is compiled with; never passed on to users.
 add_library(terrane_build_flags INTERFACE)
+# -Wmissing-field-initializers is off: it warns of every designated initializer that leaves a default
 target_compile_options(terrane_build_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  -Wno-missing-field-initializers)
 # the same bytes on every machine: no fused multiply-add where the source has none
 target_compile_options(terrane_build_flags INTERFACE -ffp-contract=off)
 if(TERRANE_SANITIZE)

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "hierarchy/collapse/sample_field.h"
+#include "hierarchy/collapse/terrain_mesh.h"
+#include "hierarchy/mesh/ids.h"
+
+namespace terrane::hierarchy {
+
+/// Keeps the blend between a level and the next one sound.
+///
+/// Every vertex of the finer level moves on a straight line to the vertex of the coarser mesh that
+/// it was collapsed into. The guard knows these targets, and refuses a collapse after which a
+/// triangle of the finer level would turn over at some t < 1, leave the tolerance at t = 1/4, 1/2
+/// or 3/4, or move a vertex further than \p reach lattice steps.
+class MorphGuard {
+ public:
+  /// \param finer      places of the finer level, one per vertex of the mesh to be collapsed.
+  /// \param triangles  the finer level's, which are the mesh's own before any collapse.
+  /// \param coarser    the mesh's vertices; read at every call, so it must outlive the guard.
+  MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
+             const std::vector<TerrainVertex>& coarser, const SampleField& field,
+             double tolerance_m, std::int64_t reach);
+
+  /// May the vertices of \p core all go to \p target?
+  bool allows(std::span<const VertexId> core, const Place& target);
+
+  /// Tells that they did, and are \p kept from now on.
+  void join(std::span<const VertexId> core, VertexId kept);
+
+  /// The coarse vertex that a fine one ends at.
+  VertexId target_of(std::uint32_t fine) const { return target_[fine]; }
+
+ private:
+  bool is_in_reach(std::uint32_t fine, const Place& target) const;
+  bool is_sound(const Corners& triangle, std::span<const VertexId> core, const Place& target) const;
+
+  std::vector<Place> finer_;
+  std::vector<Corners> triangles_;
+  const std::vector<TerrainVertex>& coarser_;
+  const SampleField& field_;
+  double tolerance_m_;
+  std::int64_t reach_;
+
+  std::vector<VertexId> target_;
+  std::vector<std::uint32_t> next_member_;  // members of a coarse vertex: a ring through itself
+  std::vector<std::uint32_t> first_incident_, incident_;
+  std::vector<std::uint32_t> checked_;
+  std::uint32_t stamp_ = 0;
+};
+
+}  // namespace terrane::hierarchy

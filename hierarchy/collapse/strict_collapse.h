@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "hierarchy/collapse/sample_field.h"
+#include "hierarchy/collapse/terrain_mesh.h"
+#include "hierarchy/mesh/stencil.h"
+
+namespace terrane::hierarchy {
+
+struct StrictOptions {
+  /// Largest vertical distance to any sample, in metres.
+  double tolerance_m = 1;
+  /// Smallest altitude in plan of a new triangle, in cells: rounding must not turn it over.
+  double smallest_altitude_cells = 0;
+  /// Furthest that a vertex of the finer level may move, in lattice steps on an axis.
+  std::int64_t reach = INT64_MAX;
+};
+
+/// What became of a mesh.
+struct StrictResult {
+  TerrainMesh mesh;
+  /// For each vertex of the input: the vertex of mesh that it was collapsed into.
+  std::vector<std::uint32_t> target;
+  std::int64_t triangle_collapses = 0;
+  std::int64_t edge_collapses = 0;
+  std::array<std::int64_t, kCollapsibilityCount> refusals{};  ///< by Collapsibility
+};
+
+/// Collapses triangles, then edges, as long as the mesh stays within the tolerance of every sample.
+///
+/// Sweeps run in memory order over stencils that do not meet. A collapse is accepted when the star
+/// that replaces the stencil, at its written (rounded) places, is within the tolerance of every
+/// sample that it covers, is nowhere folded in plan, keeps lines in place (boundary_rule.h) and, if
+/// there is a finer level, lets it blend soundly (morph_guard.h).
+///
+/// Guarantees: samples that \p input covers within the tolerance stay so; outline and locked
+/// vertices that remain have not moved; the result depends on nothing but the arguments.
+///
+/// \param finer  places of the finer level, one for each vertex of input; empty at level 0.
+/// \throws TopologyError if \p input is not manifold.
+/// \par Source
+/// Gieng et al. 1998 for the collapse; acceptance by the exact error instead of its estimate.
+StrictResult collapse_strictly(const TerrainMesh& input, const SampleField& field,
+                               const Placer& placer, const std::vector<Place>& finer,
+                               const StrictOptions& options);
+
+}  // namespace terrane::hierarchy

@@ -1,0 +1,203 @@
+#include "tiler/build.h"
+
+#include <algorithm>
+#include <thread>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+#include <tbb/parallel_for_each.h>
+#include <tbb/task_arena.h>
+
+#include "core/errors.h"
+#include "tiler/build_tile.h"
+#include "tiler/output_folder.h"
+#include "tiler/whole_file.h"
+#include "tiler/write_glb.h"
+#include "tiler/write_tileset.h"
+
+namespace terrane::tiler {
+namespace {
+
+std::string hash_hex(std::string_view text) {
+  std::uint64_t hash = 14695981039346656037U;  // FNV-1a
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
+  return fmt::format("{:016x}", hash);
+}
+
+std::string build_key(const BuildOptions& options, const HeightStatistics& statistics) {
+  return hash_hex(fmt::format("{} {} {} {}", TERRANE_GENERATOR, options.tolerance_m,
+                              options.tile_cells, statistics.fingerprint));
+}
+
+/// Does the grid run clockwise in the world (rows to the north, or columns to the west)?
+bool is_mirrored(const WorldFrame& world, GridShape shape) {
+  const double c = static_cast<double>(shape.columns - 1) / 2;
+  const double r = static_cast<double>(shape.rows - 1) / 2;
+  const GridPosition probes[] = {{c, r}, {c + 0.5, r}, {c, r + 0.5}};
+  const auto at = world.plumbs(probes);
+  return (at[1].base - at[0].base).cross(at[2].base - at[0].base).dot(at[0].up) > 0;
+}
+
+class Build {
+ public:
+  Build(const HeightSource& heights, const Georeference& place, const HeightStatistics& statistics,
+        const BuildOptions& options, const std::filesystem::path& out, Progress& progress)
+      : pyramid_(heights.shape(), options.tile_cells),
+        world_(place, heights.shape()),
+        lattice_(pyramid_, world_, statistics),
+        source_{heights, world_, pyramid_, lattice_},
+        is_mirrored_(is_mirrored(world_, heights.shape())),
+        folder_(out),
+        progress_(progress),
+        jobs_(options.jobs > 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency())),
+        data_set_{.shape = heights.shape(),
+                  .heights = statistics,
+                  .crs_wkt = place.crs_wkt(),
+                  .tile_cells = options.tile_cells,
+                  .key = build_key(options, statistics)} {
+    for (int level = 0; level < pyramid_.level_count(); ++level) {
+      data_set_.tolerance_m.push_back(std::ldexp(options.tolerance_m, level));
+    }
+  }
+
+  BuildResult run() {
+    if (folder_.finished_key() == data_set_.key) return {.was_up_to_date = true};
+    folder_.begin(data_set_.key);
+    for (int level = 0; level < pyramid_.level_count(); ++level) build_level(level);
+    return finish();
+  }
+
+ private:
+  void build_level(int level) {
+    const std::vector<TileId> tiles = pyramid_.tiles(level);
+    progress_.begin(fmt::format("level {} of {}", level, pyramid_.root_level()),
+                    static_cast<std::int64_t>(tiles.size()));
+    tbb::task_arena arena(jobs_);
+    arena.execute([&] {
+      tbb::parallel_for_each(tiles, [&](const TileId& tile) {
+        if (!is_done(tile)) build_tile(tile);
+        progress_.advance(1);
+      });
+    });
+  }
+
+  bool is_done(const TileId& tile) const {
+    if (tile.level > pyramid_.root_level()) return false;
+    return std::filesystem::exists(folder_.finished_tile(tile)) || is_done(tile.parent());
+  }
+
+  void build_tile(const TileId& tile) const {
+    const double tolerance_m = data_set_.tolerance_m[tile.level];
+    FinishedTile finished;
+    if (tile.level == 0) {
+      finished.mesh = build_leaf(source_, tile, tolerance_m).mesh;
+      write_finished_tile(finished, folder_.finished_tile(tile));
+      return;
+    }
+    const std::vector<TileId> ids = pyramid_.children(tile);
+    std::vector<TileMesh> meshes;
+    std::vector<std::vector<TileRecord>> records;
+    for (const TileId& child : ids) {
+      FinishedTile read = read_finished_tile(folder_.finished_tile(child));
+      meshes.push_back(std::move(read.mesh));
+      records.push_back(std::move(read.descendants));
+    }
+    BuiltTile built = build_parent(source_, tile, meshes, tolerance_m);
+    for (std::size_t c = 0; c < ids.size(); ++c) {
+      write_tile(ids[c], meshes[c], built.child_targets[c], std::move(records[c]),
+                 finished.descendants);
+    }
+    finished.mesh = std::move(built.mesh);
+    write_finished_tile(finished, folder_.finished_tile(tile));
+    for (const TileId& child : ids) std::filesystem::remove(folder_.finished_tile(child));
+  }
+
+  /// Writes a tile's glb and appends its record and those of its descendants to \p records.
+  void write_tile(const TileId& tile, const TileMesh& mesh, std::span<const LatticePoint> targets,
+                  std::vector<TileRecord> descendants, std::vector<TileRecord>& records) const {
+    if (mesh.triangles.empty()) return;
+    const std::string glb =
+        encode_glb(tile, mesh, targets, lattice_.step_m(tile.level), is_mirrored_);
+    write_whole_file(folder_.glb(tile), glb);
+
+    TileRecord record{.tile = tile,
+                      .triangles = static_cast<std::int64_t>(mesh.triangles.size()),
+                      .bytes = static_cast<std::int64_t>(glb.size()),
+                      .error = mesh.error,
+                      .low = Eigen::Vector3d::Constant(INFINITY),
+                      .high = Eigen::Vector3d::Constant(-INFINITY)};
+    for (const auto points : {std::span<const LatticePoint>(mesh.points), targets}) {
+      for (const LatticePoint& point : points) {
+        const Eigen::Vector3d at = lattice_.world(point, tile.level);
+        record.low = record.low.cwiseMin(at);
+        record.high = record.high.cwiseMax(at);
+      }
+    }
+    for (const TileRecord& below : descendants) {
+      record.error.max_m = std::max(record.error.max_m, below.error.max_m);
+      record.low = record.low.cwiseMin(below.low);
+      record.high = record.high.cwiseMax(below.high);
+    }
+    records.push_back(record);
+    records.insert(records.end(), descendants.begin(), descendants.end());
+  }
+
+  BuildResult finish() {
+    const TileId root{pyramid_.root_level(), 0, 0};
+    FinishedTile finished = read_finished_tile(folder_.finished_tile(root));
+    std::vector<TileRecord> records;
+    write_tile(root, finished.mesh, finished.mesh.points, std::move(finished.descendants), records);
+    if (records.empty()) {
+      throw InputError(
+          "the DEM has no three neighbouring samples with heights, so there is nothing to show. "
+          "Check --nodata and --band");
+    }
+    write_whole_file(folder_.tileset(), tileset_json(data_set_, pyramid_, world_, records));
+    write_whole_file(folder_.summary(), terrane_json(data_set_, lattice_, world_, records));
+    folder_.end();
+
+    BuildResult result{.levels = pyramid_.level_count(),
+                       .tiles = static_cast<std::int64_t>(records.size())};
+    for (const TileRecord& record : records) {
+      result.bytes += record.bytes;
+      if (record.tile.level != 0) continue;
+      result.triangles += record.triangles;
+      result.max_error_m = std::max(result.max_error_m, record.error.max_m);
+    }
+    return result;
+  }
+
+  Pyramid pyramid_;
+  WorldFrame world_;
+  Lattice lattice_;
+  TileSource source_;
+  bool is_mirrored_;
+  OutputFolder folder_;
+  Progress& progress_;
+  int jobs_;
+  DataSet data_set_;
+};
+
+}  // namespace
+
+void check(const BuildOptions& options) {
+  if (!(options.tolerance_m > 0) || !std::isfinite(options.tolerance_m)) {
+    throw ConfigError(fmt::format("--tolerance {}: must be a number of metres above 0",
+                                  options.tolerance_m));
+  }
+  if (options.tile_cells < 4 || options.tile_cells > 1024) {
+    throw ConfigError(fmt::format("--tile-cells {}: must be from 4 to 1024", options.tile_cells));
+  }
+  if (options.jobs < 0) {
+    throw ConfigError(fmt::format("--jobs {}: must be 0 (all cores) or more", options.jobs));
+  }
+}
+
+BuildResult build(const HeightSource& heights, const Georeference& place,
+                  const HeightStatistics& statistics, const BuildOptions& options,
+                  const std::filesystem::path& out, Progress& progress) {
+  check(options);
+  return Build(heights, place, statistics, options, out, progress).run();
+}
+
+}  // namespace terrane::tiler

@@ -1,0 +1,250 @@
+#include "tiler/build_tile.h"
+
+#include <map>
+
+#include <fmt/format.h>
+
+#include "core/errors.h"
+#include "hierarchy/collapse/strict_collapse.h"
+#include "tiler/measure.h"
+#include "tiler/terrain_normals.h"
+#include "tiler/tile_frame.h"
+
+namespace terrane::tiler {
+namespace {
+
+using hierarchy::Corners;
+using hierarchy::Place;
+using hierarchy::SampleField;
+using hierarchy::SampleId;
+using hierarchy::StrictOptions;
+using hierarchy::StrictResult;
+using hierarchy::TerrainMesh;
+using hierarchy::TerrainVertex;
+using hierarchy::VertexKind;
+
+// vertices move by at most 0.71 steps when a level is rounded anew, on steps twice as wide: both
+// corners of an altitude together 2.9 steps of this level
+constexpr double kSmallestAltitudeSteps = 4;
+constexpr std::int64_t kLargestDisplacement = 32767;
+
+/// One tile on its way: its samples, its map to the world, its options.
+class TileBuild {
+ public:
+  TileBuild(const TileSource& source, const TileId& tile)
+      : source_(source),
+        tile_(tile),
+        window_(source.pyramid.window(tile)),
+        grid_(source.heights.read(source.pyramid.window(tile, normal_reach(tile.level)))),
+        frame_(source.world, source.lattice, window_, tile.level) {
+    fill_field();
+  }
+
+  const Window& window() const { return window_; }
+  const HeightGrid& grid() const { return grid_; }
+  const TileFrame& frame() const { return frame_; }
+
+  /// Where a sample that no other tile shares is written.
+  Place place_inner_sample(const SampleId& sample) const {
+    const std::int64_t column = sample.column - window_.column, row = sample.row - window_.row;
+    const hierarchy::GridPoint plan{static_cast<std::int32_t>(column * hierarchy::kUnitsPerCell),
+                                    static_cast<std::int32_t>(-row * hierarchy::kUnitsPerCell)};
+    return frame_.place(plan, field_.row(row)[column]);
+  }
+
+  /// Puts the vertices of rim and seams where their samples are written: a function of the sample
+  /// alone, the same in every tile and never by way of the tile's own frame.
+  void fix_rim(TerrainMesh& mesh) const {
+    std::vector<TerrainVertex*> rim;
+    std::vector<GridPosition> positions;
+    for (TerrainVertex& vertex : mesh.vertices) {
+      if (vertex.kind == VertexKind::kInterior) continue;
+      rim.push_back(&vertex);
+      positions.push_back({static_cast<double>(vertex.sample.column),
+                           static_cast<double>(vertex.sample.row)});
+    }
+    const std::vector<Plumb> plumbs = source_.world.plumbs(positions);
+    for (std::size_t i = 0; i < rim.size(); ++i) {
+      const double height_m = grid_.at(rim[i]->sample.column, rim[i]->sample.row);
+      rim[i]->place = frame_.place_of(source_.lattice.nearest(
+          plumbs[i].base + height_m * plumbs[i].up, tile_.level));
+    }
+  }
+
+  /// Collapses and measures; again with a smaller tolerance while the world says it is too much.
+  std::pair<TileMesh, std::vector<LatticePoint>> finish(const TerrainMesh& input,
+                                                        const std::vector<Place>& finer,
+                                                        double tolerance_m) const {
+    StrictOptions options{.tolerance_m = tolerance_m};
+    options.smallest_altitude_cells =
+        kSmallestAltitudeSteps * source_.lattice.step_m(tile_.level).x() / frame_.spacing_m();
+    if (!finer.empty()) options.reach = reach();
+
+    constexpr int kMostTries = 6;
+    for (int tries = 1;; ++tries) {
+      const StrictResult result =
+          hierarchy::collapse_strictly(input, field_, frame_, finer, options);
+      TileMesh mesh = written_mesh(result.mesh);
+      if (mesh.error.max_m <= tolerance_m) return {std::move(mesh), targets(result)};
+      if (tries == kMostTries) refuse(mesh.error.max_m, tolerance_m);
+      options.tolerance_m *= std::min(0.95, 0.99 * tolerance_m / mesh.error.max_m);
+    }
+  }
+
+ private:
+  void fill_field() {
+    field_ = {window_.columns, window_.rows, {}};
+    field_.heights_m.reserve(static_cast<std::size_t>(window_.columns * window_.rows));
+    for (std::int64_t row = 0; row < window_.rows; ++row) {
+      for (std::int64_t column = 0; column < window_.columns; ++column) {
+        field_.heights_m.push_back(
+            grid_.at(window_.column + column, window_.row + row) -
+            frame_.drop_m(static_cast<double>(column), static_cast<double>(row)));
+      }
+    }
+  }
+
+  std::int64_t reach() const {
+    const LatticePoint ratio = source_.lattice.refine({1, 1, 1}, tile_.level - 1);
+    return kLargestDisplacement / std::max({ratio.i, ratio.j, ratio.k}) - 1;
+  }
+
+  TileMesh written_mesh(const TerrainMesh& terrain) const {
+    TileMesh mesh;
+    std::vector<Place> places;
+    for (const TerrainVertex& vertex : terrain.vertices) {
+      mesh.points.push_back(vertex.place.lattice);
+      mesh.samples.push_back(vertex.sample);
+      places.push_back(vertex.place);
+    }
+    mesh.triangles = terrain.triangles;
+    mesh.normals = terrain_normals(places, frame_, tile_.level, grid_, window_);
+    mesh.error = measure(places, mesh.triangles, frame_, source_.lattice, tile_.level, grid_,
+                         window_);
+    return mesh;
+  }
+
+  static std::vector<LatticePoint> targets(const StrictResult& result) {
+    std::vector<LatticePoint> points;
+    for (const std::uint32_t v : result.target) {
+      points.push_back(result.mesh.vertices[v].place.lattice);
+    }
+    return points;
+  }
+
+  [[noreturn]] void refuse(double measured_m, double tolerance_m) const {
+    throw ConfigError(fmt::format(
+        "tile {}: is {:.3g} m from the DEM where {:.3g} m is asked for, as its positions are "
+        "rounded to {:.3g} m in plan and {:.3g} m in height. Use a larger --tolerance, or a smaller "
+        "--tile-cells",
+        path_of(tile_), measured_m, tolerance_m, source_.lattice.step_m(tile_.level).x(),
+        source_.lattice.step_m(tile_.level).z()));
+  }
+
+  const TileSource& source_;
+  TileId tile_;
+  Window window_;
+  HeightGrid grid_;
+  TileFrame frame_;
+  SampleField field_;
+};
+
+/// Children joined: one vertex where seams meet.
+struct Joined {
+  std::vector<LatticePoint> points;  ///< on the children's lattice
+  std::vector<SampleId> samples;
+  std::vector<Corners> triangles;
+  std::vector<std::vector<std::uint32_t>> number;  ///< of each child's vertices
+};
+
+Joined join(const std::vector<TileMesh>& children) {
+  Joined joined;
+  std::map<std::pair<std::int32_t, std::int32_t>, std::uint32_t> by_sample;
+  for (const TileMesh& child : children) {
+    std::vector<std::uint32_t> number;
+    for (std::size_t v = 0; v < child.points.size(); ++v) {
+      const SampleId sample = child.samples[v];
+      auto next = static_cast<std::uint32_t>(joined.points.size());
+      if (sample.column >= 0) {
+        next = by_sample.emplace(std::pair{sample.row, sample.column}, next).first->second;
+      }
+      if (next == joined.points.size()) {
+        joined.points.push_back(child.points[v]);
+        joined.samples.push_back(sample);
+      }
+      number.push_back(next);
+    }
+    for (const Corners& c : child.triangles) {
+      joined.triangles.push_back({number[c[0]], number[c[1]], number[c[2]]});
+    }
+    joined.number.push_back(std::move(number));
+  }
+  return joined;
+}
+
+/// Which vertices have an edge with a triangle on one side only.
+std::vector<bool> find_boundary(std::size_t vertex_count, const std::vector<Corners>& triangles) {
+  const hierarchy::HalfedgeMesh mesh(static_cast<std::uint32_t>(vertex_count), triangles);
+  std::vector<bool> boundary(vertex_count, false);
+  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+    const hierarchy::VertexId id{v};
+    if (mesh.is_boundary(id)) boundary[mesh.origin(id)] = true;
+  }
+  return boundary;
+}
+
+/// Inside, a vertex is free; on the rim it keeps its sample, and on a seam its place as well.
+void set_kind(TerrainVertex& vertex, bool is_boundary, const SampleId& sample,
+              const Pyramid& pyramid, const TileId& tile) {
+  if (!is_boundary) return;
+  vertex.sample = sample;
+  vertex.kind = pyramid.is_on_seam(tile, sample.column, sample.row) ? VertexKind::kLocked
+                                                                    : VertexKind::kOutline;
+}
+
+}  // namespace
+
+BuiltTile build_leaf(const TileSource& source, const TileId& tile, double tolerance_m) {
+  const TileBuild build(source, tile);
+  hierarchy::GridTriangles full = hierarchy::triangulate(build.grid(), build.window());
+  if (full.triangles.empty()) return {};
+
+  const std::vector<bool> boundary = find_boundary(full.vertices.size(), full.triangles);
+  TerrainMesh mesh{{}, std::move(full.triangles)};
+  for (std::size_t v = 0; v < full.vertices.size(); ++v) {
+    mesh.vertices.push_back({.place = build.place_inner_sample(full.vertices[v])});
+    set_kind(mesh.vertices.back(), boundary[v], full.vertices[v], source.pyramid, tile);
+  }
+  build.fix_rim(mesh);
+  return {build.finish(mesh, {}, tolerance_m).first, {}};
+}
+
+BuiltTile build_parent(const TileSource& source, const TileId& tile,
+                       const std::vector<TileMesh>& children, double tolerance_m) {
+  BuiltTile result;
+  Joined joined = join(children);
+  result.child_targets.resize(children.size());
+  if (joined.triangles.empty()) return result;
+
+  const TileBuild build(source, tile);
+  const std::vector<bool> boundary = find_boundary(joined.points.size(), joined.triangles);
+  std::vector<Place> finer;
+  TerrainMesh mesh{{}, std::move(joined.triangles)};
+  for (std::uint32_t v = 0; v < joined.points.size(); ++v) {
+    finer.push_back(build.frame().place_of_finer(joined.points[v]));
+    mesh.vertices.push_back({.place = build.frame().place_of(finer.back().lattice)});
+    set_kind(mesh.vertices.back(), boundary[v], joined.samples[v], source.pyramid, tile);
+  }
+  build.fix_rim(mesh);
+
+  auto [own, targets] = build.finish(mesh, finer, tolerance_m);
+  result.mesh = std::move(own);
+  for (std::size_t c = 0; c < children.size(); ++c) {
+    for (const std::uint32_t v : joined.number[c]) {
+      result.child_targets[c].push_back(source.lattice.refine(targets[v], tile.level - 1));
+    }
+  }
+  return result;
+}
+
+}  // namespace terrane::tiler

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "core/height_source.h"
+#include "tiler/lattice.h"
+#include "tiler/pyramid.h"
+#include "tiler/tile_mesh.h"
+#include "tiler/world_frame.h"
+
+namespace terrane::tiler {
+
+/// What every tile of a data set is built from.
+struct TileSource {
+  const HeightSource& heights;
+  const WorldFrame& world;
+  const Pyramid& pyramid;
+  const Lattice& lattice;
+};
+
+/// A tile and where the vertices of its children end in it.
+struct BuiltTile {
+  TileMesh mesh;
+  /// For each child, for each of its vertices: the place at t = 1, in steps of the *child's* level.
+  std::vector<std::vector<LatticePoint>> child_targets;
+};
+
+/// Builds a leaf tile from its samples.
+/// \throws ConfigError if the tolerance is finer than what the lattice can hold.
+BuiltTile build_leaf(const TileSource& source, const TileId& tile, double tolerance_m);
+
+/// Builds a tile from the meshes of its children (in the order of Pyramid::children): joins them
+/// along their seams and collapses what the wider tolerance allows.
+///
+/// The result is within the tolerance of every sample as measured in the world; its seams are the
+/// children's outer ones, vertex by vertex.
+BuiltTile build_parent(const TileSource& source, const TileId& tile,
+                       const std::vector<TileMesh>& children, double tolerance_m);
+
+}  // namespace terrane::tiler

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/height_statistics.h"
+#include "core/lattice_point.h"
+#include "tiler/pyramid.h"
+#include "tiler/world_frame.h"
+
+namespace terrane::tiler {
+
+/// The world lattice: a step per axis and level, powers of two of metres, a level's steps whole
+/// multiples of the finer level's.
+class Lattice {
+ public:
+  /// Chooses the finest steps for which every tile fits 16 bits on each axis.
+  Lattice(const Pyramid& pyramid, const WorldFrame& world, const HeightStatistics& heights);
+
+  /// \param steps_m  east, north, up for each level.
+  explicit Lattice(std::vector<Eigen::Vector3d> steps_m) : steps_m_(std::move(steps_m)) {}
+
+  const Eigen::Vector3d& step_m(int level) const { return steps_m_[level]; }
+
+  /// The nearest lattice point; halves go up, so that the answer depends on the place alone.
+  LatticePoint nearest(const Eigen::Vector3d& world, int level) const;
+  Eigen::Vector3d world(const LatticePoint& point, int level) const;
+
+  /// The nearest point of the next level.
+  LatticePoint coarsen(const LatticePoint& point, int level) const;
+  /// A point of the next level in the steps of this one. Exact.
+  LatticePoint refine(const LatticePoint& point, int level) const;
+
+ private:
+  std::array<std::int64_t, 3> ratio(int level) const;
+
+  std::vector<Eigen::Vector3d> steps_m_;
+};
+
+}  // namespace terrane::tiler

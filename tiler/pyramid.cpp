@@ -1,0 +1,57 @@
+#include "tiler/pyramid.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace terrane::tiler {
+
+std::string path_of(const TileId& tile) {
+  return fmt::format("{}/{}/{}", tile.level, tile.x, tile.y);
+}
+
+Pyramid::Pyramid(GridShape shape, std::int64_t tile_cells)
+    : shape_(shape), tile_cells_(tile_cells) {
+  while (cells_per_side(root_level()) < std::max(shape.columns, shape.rows) - 1) ++level_count_;
+}
+
+std::vector<TileId> Pyramid::tiles(int level) const {
+  std::vector<TileId> result;
+  for (std::int64_t y = 0; holds({level, 0, y}); ++y) {
+    for (std::int64_t x = 0; holds({level, x, y}); ++x) result.push_back({level, x, y});
+  }
+  return result;
+}
+
+std::vector<TileId> Pyramid::children(const TileId& tile) const {
+  std::vector<TileId> result;
+  for (int quadrant = 0; quadrant < 4 && tile.level > 0; ++quadrant) {
+    if (holds(tile.child(quadrant))) result.push_back(tile.child(quadrant));
+  }
+  return result;
+}
+
+bool Pyramid::holds(const TileId& tile) const {
+  const std::int64_t side = cells_per_side(tile.level);
+  return tile.x * side < shape_.columns - 1 && tile.y * side < shape_.rows - 1;
+}
+
+Window Pyramid::window(const TileId& tile) const { return window(tile, 0); }
+
+Window Pyramid::window(const TileId& tile, std::int64_t margin) const {
+  const std::int64_t side = cells_per_side(tile.level);
+  const std::int64_t left = std::max<std::int64_t>(0, tile.x * side - margin);
+  const std::int64_t top = std::max<std::int64_t>(0, tile.y * side - margin);
+  const std::int64_t right = std::min(shape_.columns - 1, (tile.x + 1) * side + margin);
+  const std::int64_t bottom = std::min(shape_.rows - 1, (tile.y + 1) * side + margin);
+  return {left, top, right - left + 1, bottom - top + 1};
+}
+
+bool Pyramid::is_on_seam(const TileId& tile, std::int64_t column, std::int64_t row) const {
+  const Window own = window(tile);
+  const std::int64_t right = own.column + own.columns - 1, bottom = own.row + own.rows - 1;
+  return (column == own.column && column > 0) || (column == right && right < shape_.columns - 1) ||
+         (row == own.row && row > 0) || (row == bottom && bottom < shape_.rows - 1);
+}
+
+}  // namespace terrane::tiler

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/height_grid.h"
+#include "tiler/tile_id.h"
+
+namespace terrane::tiler {
+
+/// The native quadtree over a DEM: leaf tiles of tile_cells x tile_cells cells from the first sample
+/// on, ragged at the last columns and rows, four tiles to one, until one is left.
+class Pyramid {
+ public:
+  /// \param tile_cells  cells along a leaf tile, 1 or more.
+  Pyramid(GridShape shape, std::int64_t tile_cells);
+
+  int level_count() const { return level_count_; }
+  int root_level() const { return level_count_ - 1; }
+
+  /// Tiles of a level, row by row.
+  std::vector<TileId> tiles(int level) const;
+  /// The children of a tile that the DEM reaches; none at level 0.
+  std::vector<TileId> children(const TileId& tile) const;
+  /// The samples of a tile, those of its borders included.
+  Window window(const TileId& tile) const;
+  /// The samples of a tile and up to \p margin more on each side, as far as the DEM goes.
+  Window window(const TileId& tile, std::int64_t margin) const;
+
+  /// Does a sample lie on a border that the tile shares with a neighbour's place?
+  bool is_on_seam(const TileId& tile, std::int64_t column, std::int64_t row) const;
+
+ private:
+  bool holds(const TileId& tile) const;
+  std::int64_t cells_per_side(int level) const { return tile_cells_ << level; }
+
+  GridShape shape_;
+  std::int64_t tile_cells_;
+  int level_count_ = 1;
+};
+
+}  // namespace terrane::tiler

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/height_source.h"
+#include "core/height_statistics.h"
+#include "tiler/lattice.h"
+#include "tiler/pyramid.h"
+#include "tiler/tile_mesh.h"
+#include "tiler/world_frame.h"
+
+namespace terrane::tiler {
+
+/// Everything about a finished data set that its two JSON files tell.
+struct DataSet {
+  GridShape shape;
+  HeightStatistics heights;
+  std::string crs_wkt;
+  std::int64_t tile_cells = 64;
+  std::vector<double> tolerance_m;  ///< of each level
+  std::string key;                  ///< what the data set was built from; see build_key()
+};
+
+/// tileset.json: 3D Tiles 1.1, one tree, the root's transform to ECEF where the frame has one.
+/// \param records  of every written tile, in any order.
+std::string tileset_json(const DataSet& data_set, const Pyramid& pyramid, const WorldFrame& world,
+                         const std::vector<TileRecord>& records);
+
+/// terrane.json: levels with their sums, lattice and frame.
+std::string terrane_json(const DataSet& data_set, const Lattice& lattice, const WorldFrame& world,
+                         const std::vector<TileRecord>& records);
+
+}  // namespace terrane::tiler
