@@ -1,0 +1,81 @@
+// The ranges r_l: the camera distance from which on level l shows as level l + 1.
+//
+// A vertex of level l has t = 0 up to (1 - m) r_l and t = 1 from r_l on. Where a tile of level l
+// meets one of level l + 1, the fine side must be at t = 1 and the coarse side still at t = 0:
+//
+//     distance   0 --------(1-m) r_0 ~~~ r_0 ------------------(1-m) r_1 ~~~ r_1 ---->
+//     level      0         0 -> 1        1                      1 -> 2       2
+//                                        |<- diagonal of a level 1 box ->|
+//
+// A box of level l + 1 is split when its nearest point is closer than r_l; its farthest one is then
+// closer than r_l + diagonal. So r_l + diagonal_(l+1) <= (1 - m) r_(l+1) is what keeps cracks out,
+// and neighbours within one level. A range of 0 says that the level is never shown: the ranges
+// above it are then free.
+import type {Level} from './tileset';
+
+/** m: the share of a range in which vertices morph. */
+export const kMorphShare = 0.25;
+
+/** Room for float32 distances on the graphics card: they are good to about 1e-6. */
+export const kSlack = 1 / 1024;
+
+/** Index = level; one entry for each level except the root's, in metres. */
+export type Ranges = readonly number[];
+
+/**
+ * K: pixels that a metre covers at a distance of a metre.
+ *
+ * @param heightPx height of the picture
+ * @param fovDeg vertical opening angle
+ */
+export function pixelsPerRadian(heightPx: number, fovDeg: number): number {
+  return heightPx / (2 * Math.tan((fovDeg * Math.PI) / 360));
+}
+
+/**
+ * The ranges at which no level's tolerance covers more than tolerancePx, made larger where the
+ * inequality above asks for it, from the finest up.
+ *
+ * @param pixelScale K of pixelsPerRadian()
+ * @param tolerancePx wanted error on the screen, above 0
+ */
+export function wantedRanges(
+  levels: readonly Level[],
+  pixelScale: number,
+  tolerancePx: number,
+): Ranges {
+  const ranges: number[] = [];
+  for (let l = 0; l + 1 < levels.length; ++l) {
+    const forError = (levels[l + 1]!.toleranceM * pixelScale) / tolerancePx;
+    const floor = l === 0 ? 0 : smallestAbove(ranges[l - 1]!, levels[l]!.diagonalM);
+    ranges.push(Math.max(forError, floor));
+  }
+  return ranges;
+}
+
+/**
+ * Ranges for a picture that is not all loaded: `share` times the wanted ones, made smaller where
+ * the inequality asks for it, from the coarsest down. Continuous and growing with share: 0 shows
+ * the root alone, 1 what is wanted.
+ */
+export function reducedRanges(levels: readonly Level[], wanted: Ranges, share: number): Ranges {
+  const ranges = wanted.map((range) => range * share);
+  for (let l = ranges.length - 2; l >= 0; --l) {
+    const largest = largestBelow(ranges[l + 1]!, levels[l + 1]!.diagonalM);
+    ranges[l] = Math.max(0, Math.min(ranges[l]!, largest));
+  }
+  return ranges;
+}
+
+/** Where vertices of a level begin and end to morph, in metres from the camera. */
+export function morphInterval(rangeM: number): {beginM: number; endM: number} {
+  return {beginM: rangeM * (1 - kMorphShare), endM: rangeM * (1 - kSlack)};
+}
+
+function smallestAbove(finerRangeM: number, diagonalM: number): number {
+  return ((finerRangeM + diagonalM) * (1 + kSlack)) / (1 - kMorphShare);
+}
+
+function largestBelow(coarserRangeM: number, diagonalM: number): number {
+  return (coarserRangeM * (1 - kMorphShare)) / (1 + kSlack) - diagonalM;
+}

@@ -1,0 +1,44 @@
+// Floats are fine near 0 only: everything is drawn from an origin near the eye. The origin lies on
+// the coarsest level's lattice, hence on every level's, so a tile's offset from it is a whole number
+// of the tile's steps and exact in float32.
+import type {MorphUniforms} from './morph';
+import {morphInterval, type Ranges} from './ranges';
+import type {Vec3} from './vec3';
+
+/** The lattice point next to the eye. */
+export function renderOrigin(eye: Vec3, coarsestStepM: Vec3): Vec3 {
+  const snap = (axis: 0 | 1 | 2) => Math.round(eye[axis] / coarsestStepM[axis]) * coarsestStepM[axis];
+  return [snap(0), snap(1), snap(2)];
+}
+
+/** A tile's place on the lattice. */
+export interface LatticePlace {
+  readonly level: number;
+  /** Lattice point of the tile's origin, in steps. */
+  readonly origin: Vec3;
+  readonly stepM: Vec3;
+}
+
+/**
+ * What the shader needs for a tile.
+ *
+ * @param ranges without an entry for the root's level: the root never morphs
+ * @param eyeM the eye less the render origin
+ */
+export function morphUniforms(
+  tile: LatticePlace,
+  ranges: Ranges,
+  eyeM: Vec3,
+  originM: Vec3,
+): MorphUniforms {
+  const offset = (axis: 0 | 1 | 2) => tile.origin[axis] * tile.stepM[axis] - originM[axis];
+  const rangeM = ranges[tile.level];
+  const interval = rangeM ? morphInterval(rangeM) : undefined;
+  return {
+    stepM: tile.stepM,
+    offsetM: [offset(0), offset(1), offset(2)],
+    eyeM,
+    beginM: interval?.beginM ?? 0,
+    perM: interval ? 1 / (interval.endM - interval.beginM) : 0,
+  };
+}

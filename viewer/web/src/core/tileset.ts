@@ -1,0 +1,163 @@
+// Reads tileset.json and terrane.json (docs/formats.md) into a tree of tiles.
+import {diagonal, type Box} from './box';
+import type {Vec3} from './vec3';
+
+/** One node of the quadtree. */
+export interface Tile {
+  /** "l/x/y", unique in the tileset. */
+  readonly key: string;
+  readonly level: number;
+  readonly x: number;
+  readonly y: number;
+  /** Holds the content, the content at the end of its morph, and the children's boxes. */
+  readonly box: Box;
+  /** Address of the glb. */
+  readonly url: string;
+  readonly triangles: number;
+  readonly parent: Tile | null;
+  /** None for a leaf; fewer than four where the rest has no data. */
+  readonly children: readonly Tile[];
+}
+
+/** What the viewer needs to know about one level. */
+export interface Level {
+  readonly level: number;
+  readonly toleranceM: number;
+  /** Size of one lattice step along east, north, up; powers of two. */
+  readonly stepM: Vec3;
+  /** Longest diagonal of a tile's box. */
+  readonly diagonalM: number;
+}
+
+export interface Tileset {
+  readonly root: Tile;
+  /** Index = level, 0 is the finest; the last one is the root's. */
+  readonly levels: readonly Level[];
+  readonly tileCells: number;
+  readonly minHeightM: number;
+  readonly maxHeightM: number;
+  /** Plan distance of two samples, from below: the smaller of the two directions. */
+  readonly cellM: number;
+  /** World z is height less plan distance squared / (2 R); false: world z is height. */
+  readonly curved: boolean;
+}
+
+/** A tileset that cannot be shown. The message names the file and what is wrong. */
+export class TilesetError extends Error {}
+
+interface TileJson {
+  boundingVolume?: {box?: number[]};
+  content?: {uri?: string};
+  children?: TileJson[];
+  transform?: number[];
+  extras?: {terrane?: {level?: number; x?: number; y?: number; triangles?: number}};
+}
+
+interface LevelJson {
+  level: number;
+  tolerance_m: number;
+  step_m: [number, number, number];
+  largest_diagonal_m: number;
+}
+
+interface TerraneJson {
+  format?: string;
+  tile_cells: number;
+  dem: {columns: number; rows: number; min_height_m: number; max_height_m: number};
+  frame: {kind: string};
+  levels: LevelJson[];
+}
+
+/**
+ * Builds the tree.
+ *
+ * @param tileset content of tileset.json
+ * @param terrane content of terrane.json
+ * @param baseUrl absolute address of tileset.json; tiles are looked for beside it
+ * @throws TilesetError where a field is absent or the levels of tree and ladder do not agree
+ */
+export function parseTileset(tileset: unknown, terrane: unknown, baseUrl: string): Tileset {
+  const description = terrane as TerraneJson;
+  const rootJson = (tileset as {root?: TileJson}).root;
+  if (!rootJson) throw new TilesetError(`${baseUrl}: no "root". Is this a 3D Tiles tileset?`);
+  if (!description.format?.startsWith('terrane/1')) {
+    throw new TilesetError(`terrane.json beside ${baseUrl}: format is not terrane/1`);
+  }
+  const root = parseTile(rootJson, null, baseUrl);
+  const levels = parseLevels(description.levels, root);
+  return {
+    root,
+    levels,
+    tileCells: description.tile_cells,
+    minHeightM: description.dem.min_height_m,
+    maxHeightM: description.dem.max_height_m,
+    cellM: smallestCell(root.box, description.dem),
+    curved: description.frame.kind === 'enu',
+  };
+}
+
+/** Every tile of a subtree, parents before children. */
+export function* tilesOf(tile: Tile): Generator<Tile> {
+  yield tile;
+  for (const child of tile.children) yield* tilesOf(child);
+}
+
+function parseTile(json: TileJson, parent: Tile | null, baseUrl: string): Tile {
+  const id = json.extras?.terrane;
+  if (id?.level === undefined || id.x === undefined || id.y === undefined) {
+    throw new TilesetError(`${baseUrl}: a tile has no extras.terrane with level, x and y`);
+  }
+  const key = `${id.level}/${id.x}/${id.y}`;
+  if (!json.content?.uri) throw new TilesetError(`${baseUrl}: tile ${key} has no content.uri`);
+  if (parent && id.level !== parent.level - 1) {
+    throw new TilesetError(`${baseUrl}: tile ${key} is not one level below ${parent.key}`);
+  }
+  if (parent && json.transform) {
+    throw new TilesetError(`${baseUrl}: tile ${key} has a transform; only the root may have one`);
+  }
+  const children: Tile[] = [];
+  const tile: Tile = {
+    key,
+    level: id.level,
+    x: id.x,
+    y: id.y,
+    box: parseBox(json.boundingVolume?.box, key, baseUrl),
+    url: new URL(json.content.uri, baseUrl).href,
+    triangles: id.triangles ?? 0,
+    parent,
+    children,
+  };
+  children.push(...(json.children ?? []).map((child) => parseTile(child, tile, baseUrl)));
+  return tile;
+}
+
+function parseBox(numbers: number[] | undefined, key: string, baseUrl: string): Box {
+  if (numbers?.length !== 12 || !numbers.every(Number.isFinite)) {
+    throw new TilesetError(`${baseUrl}: tile ${key} has no boundingVolume.box of 12 numbers`);
+  }
+  const at = (i: number): Vec3 => [numbers[i]!, numbers[i + 1]!, numbers[i + 2]!];
+  return {center: at(0), halfAxes: [at(3), at(6), at(9)]};
+}
+
+function parseLevels(json: LevelJson[], root: Tile): Level[] {
+  const boxes = new Map<number, number>();
+  for (const tile of tilesOf(root)) {
+    boxes.set(tile.level, Math.max(boxes.get(tile.level) ?? 0, diagonal(tile.box)));
+  }
+  const levels = [...json].sort((a, b) => a.level - b.level).map((level) => ({
+    level: level.level,
+    toleranceM: level.tolerance_m,
+    stepM: level.step_m,
+    // the boxes decide which tiles are shown, so theirs counts where it is larger
+    diagonalM: Math.max(level.largest_diagonal_m, boxes.get(level.level) ?? 0),
+  }));
+  if (levels.length !== root.level + 1 || levels.some((level, i) => level.level !== i)) {
+    throw new TilesetError(`terrane.json: levels are not 0 to ${root.level}, the root's level`);
+  }
+  return levels;
+}
+
+function smallestCell(box: Box, dem: {columns: number; rows: number}): number {
+  const extent = (axis: 0 | 1) => 2 * box.halfAxes.reduce((sum, a) => sum + Math.abs(a[axis]), 0);
+  return Math.min(extent(0) / (dem.columns - 1), extent(1) / (dem.rows - 1));
+}

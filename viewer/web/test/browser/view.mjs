@@ -1,0 +1,188 @@
+// Looks at a served tileset with headless Chromium.
+//
+//     node view.mjs --url http://127.0.0.1:8080/ --screenshot view.png
+//         [--tolerance 4] [--steps 20] [--chromium /usr/bin/chromium] [--closeup close.png]
+//
+// One line for each check; exit status 0 if all hold.
+import {mkdtemp, rm, writeFile} from 'node:fs/promises';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {parseArgs} from 'node:util';
+import {chromium} from 'playwright-core';
+
+const {values: options} = parseArgs({
+  options: {
+    url: {type: 'string'},
+    screenshot: {type: 'string'},
+    closeup: {type: 'string'},
+    tolerance: {type: 'string', default: '4'},
+    steps: {type: 'string', default: '20'},
+    chromium: {type: 'string', default: '/usr/bin/chromium'},
+  },
+});
+
+/** What software rendering manages in a few seconds. */
+const kMostTriangles = 50000;
+const kPicture = {width: 640, height: 480};
+const kReadyMs = 120000;
+
+// software rendering, and no traffic of the browser's own
+const kFlags = [
+  '--no-sandbox',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+  '--use-gl=angle',
+  '--use-angle=swiftshader',
+  '--enable-unsafe-swiftshader',
+];
+
+let failures = 0;
+
+function check(holds, text) {
+  console.log(`${holds ? 'ok  ' : 'FAIL'} ${text}`);
+  if (!holds) ++failures;
+}
+
+/** Opens the page; collects console errors and requests that fail. */
+async function open(context) {
+  const problems = {console: [], requests: []};
+  const page = await context.newPage();
+  await page.route('**', (route) => {
+    const {hostname, protocol} = new URL(route.request().url());
+    const isLocal = hostname === '127.0.0.1' || hostname === 'localhost' || protocol === 'data:';
+    return isLocal ? route.continue() : route.abort();
+  });
+  page.on('console', (message) => {
+    if (message.type() === 'error') problems.console.push(message.text());
+  });
+  page.on('pageerror', (error) => problems.console.push(error.message));
+  page.on('response', (response) => {
+    if (response.status() >= 400) problems.requests.push(`${response.status()} ${response.url()}`);
+  });
+  page.on('requestfailed', (request) => {
+    // the viewer lets go of tiles that it no longer wants
+    const reason = request.failure()?.errorText ?? '';
+    if (reason !== 'net::ERR_ABORTED') problems.requests.push(`${reason} ${request.url()}`);
+  });
+  const url = new URL(options.url);
+  url.searchParams.set('antialias', 'off');
+  url.searchParams.set('tolerance', options.tolerance);
+  await page.goto(url.href);
+  await page.waitForFunction(() => window.terrane, undefined, {timeout: kReadyMs});
+  return {page, problems};
+}
+
+/** Resolves when all wanted detail is shown; rejects after two minutes. */
+async function ready(page) {
+  const late = new Promise((_, reject) => {
+    const timer = setTimeout(() => reject(new Error('not ready after two minutes')), kReadyMs);
+    timer.unref();
+  });
+  await Promise.race([page.evaluate(() => window.terrane.ready()), late]);
+}
+
+/** Drawn pixels of the canvas (the sky behind it is clear) and their different colours. */
+function readPicture(page) {
+  return page.evaluate(() => {
+    const canvas = document.getElementById('terrain');
+    const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d');
+    window.terrane.redraw();
+    copy.drawImage(canvas, 0, 0);
+    const {data} = copy.getImageData(0, 0, canvas.width, canvas.height);
+    const colors = new Set();
+    let drawn = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      if (data[i + 3] === 0) continue;
+      ++drawn;
+      colors.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
+    }
+    return {drawn: drawn / (data.length / 4), colors: colors.size};
+  });
+}
+
+/** Cameras from the first one's distance down to a few steps over the ground, turning on the way. */
+async function cameraPath(page, steps) {
+  const {min, max} = await page.evaluate(() => window.terrane.bounds());
+  const [x, y] = [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2];
+  const z = await page.evaluate(([px, py]) => window.terrane.groundZ(px, py), [x, y]);
+  const target = [x, y, z ?? (min[2] + max[2]) / 2];
+  const far = 1.4 * Math.hypot(max[0] - min[0], max[1] - min[1]);
+  return [...Array(steps).keys()].map((i) => {
+    const share = i / Math.max(1, steps - 1);
+    const distance = far * 0.01 ** share;
+    const [turn, pitch] = [2.5 * share, 0.6];
+    const eye = [
+      target[0] + distance * Math.sin(turn) * Math.cos(pitch),
+      target[1] - distance * Math.cos(turn) * Math.cos(pitch),
+      target[2] + distance * Math.sin(pitch),
+    ];
+    return {eye, target};
+  });
+}
+
+function checkStep(text, stats, loading, settled) {
+  const levels = Object.entries(stats.levels).map(([level, tiles]) => `${level}:${tiles}`);
+  const tight = settled.mismatches === 0 && loading.mismatches === 0;
+  const holds = settled.pairs > 0 && tight && stats.triangles > 0;
+  check(
+    holds && stats.triangles < kMostTriangles,
+    `${text}: ${stats.triangles} triangles, tiles ${levels.join(' ')}; ${settled.pairs} seams, ` +
+      `${settled.vertices} vertices, ${settled.mismatches} mismatches (${settled.worst_m} m), ` +
+      `${loading.mismatches} while loading`,
+  );
+}
+
+async function walk(page) {
+  const steps = Number(options.steps);
+  const cameras = await cameraPath(page, steps);
+  for (const [i, camera] of cameras.entries()) {
+    await page.evaluate((c) => window.terrane.setCamera(c), camera);
+    // before everything has arrived: a coarser cut, but no cracks either
+    const loading = await page.evaluate(() => window.terrane.checkSeams());
+    await ready(page);
+    const settled = await page.evaluate(() => window.terrane.checkSeams());
+    const stats = await page.evaluate(() => window.terrane.stats());
+    checkStep(`step ${i + 1} of ${steps}`, stats, loading, settled);
+  }
+}
+
+async function look(context) {
+  const {page, problems} = await open(context);
+  await ready(page);
+  const picture = await readPicture(page);
+  check(picture.drawn > 0.1, `terrain covers ${(100 * picture.drawn).toFixed(0)} % of the picture`);
+  check(picture.colors > 500, `${picture.colors} different colours`);
+  const stats = await page.evaluate(() => window.terrane.stats());
+  check(stats.triangles > 0, `${stats.triangles} triangles in ${stats.tiles} tiles`);
+  if (options.screenshot) await writeFile(options.screenshot, await page.screenshot());
+  await walk(page);
+  if (options.closeup) await writeFile(options.closeup, await page.screenshot());
+  const {failed} = await page.evaluate(() => window.terrane.stats());
+  check(failed === 0, `${failed} tiles failed`);
+  check(problems.console.length === 0, `console errors: ${problems.console.join('; ') || 'none'}`);
+  check(problems.requests.length === 0, `failed requests: ${problems.requests.join('; ') || 'none'}`);
+}
+
+async function main() {
+  if (!options.url) throw new Error('Say --url, the address of the page to look at');
+  const profile = await mkdtemp(join(tmpdir(), 'terrane-view-'));
+  const context = await chromium.launchPersistentContext(profile, {
+    executablePath: options.chromium,
+    headless: true,
+    args: kFlags,
+    viewport: kPicture,
+  });
+  try {
+    await look(context);
+  } finally {
+    await context.close();
+    await rm(profile, {recursive: true, force: true});
+  }
+}
+
+main()
+  .catch((error) => check(false, error.message))
+  .finally(() => process.exit(failures > 0 ? 1 : 0));
