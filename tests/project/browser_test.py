@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""Builds tiles, serves them with `terrane serve` and looks at them with a headless Chromium.
+
+What is asserted of the page is in viewer/web/test/browser/view.mjs. Ends with 77 (skipped) where
+Chromium, Node, the viewer or the DEM is missing.
+"""
+
+import argparse
+import contextlib
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+VIEW = ROOT / "viewer/web/test/browser/view.mjs"
+SKIPPED = 77
+
+
+def dem_of(terrain, data):
+    if terrain == "caldera":
+        return "synthetic:caldera?size=257&seed=1"
+    return str(data / "st_helens/SainteHelens_post1980_30m.dem")
+
+
+def reason_to_skip(dem, viewer_built):
+    if not viewer_built:
+        return "the web viewer is not part of this build"
+    for tool in ("node", "chromium"):
+        if not shutil.which(tool):
+            return f"{tool} is missing"
+    if not dem.startswith("synthetic:") and not pathlib.Path(dem).exists():
+        return f"{dem} is not there"
+    return None
+
+
+@contextlib.contextmanager
+def served(terrane, folder):
+    """Runs `terrane serve` on a free port; gives its URL."""
+    server = subprocess.Popen([terrane, "serve", str(folder), "--port", "0"],
+                              stdout=subprocess.PIPE, text=True)
+    try:
+        printed = []
+        for line in server.stdout:
+            printed.append(line)
+            if url := re.search(r"http://\S+", line):
+                yield url[0]
+                return
+        raise SystemExit(f"terrane serve printed no URL, but: {''.join(printed)}")
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("terrain", choices=["caldera", "st_helens"])
+    parser.add_argument("--terrane", required=True)
+    parser.add_argument("--data", required=True, type=pathlib.Path)
+    parser.add_argument("--viewer-built", default="")
+    parser.add_argument("--work", required=True, type=pathlib.Path)
+    options = parser.parse_args()
+
+    dem = dem_of(options.terrain, options.data)
+    if reason := reason_to_skip(dem, options.viewer_built):
+        print(f"skipped: {reason}")
+        return SKIPPED
+
+    options.work.mkdir(parents=True, exist_ok=True)
+    tiles = options.work / "tiles"
+    subprocess.run([options.terrane, "build", dem, "-o", tiles, "--tolerance", "1"], check=True)
+    with served(options.terrane, tiles) as url:
+        screenshot = options.work / "screenshot.png"
+        return subprocess.run(["node", VIEW, "--url", url, "--screenshot", screenshot]).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())
