@@ -1,0 +1,103 @@
+import {describe, expect, it} from 'vitest';
+import {
+  kMorphShare,
+  morphInterval,
+  pixelsPerRadian,
+  reducedRanges,
+  wantedRanges,
+  type Ranges,
+} from '../../src/core/ranges';
+import type {Level} from '../../src/core/tileset';
+import {randomSource} from './random';
+
+/** Ladders and boxes without any regularity but growth. */
+function randomLevels(random: () => number): Level[] {
+  let [toleranceM, diagonalM] = [0.1 + random(), 100 + 1000 * random()];
+  return [...Array(2 + Math.floor(8 * random())).keys()].map((level) => {
+    toleranceM *= 1.05 + 3 * random();
+    diagonalM *= 1.1 + 2 * random();
+    return {level, toleranceM, diagonalM, stepM: [1, 1, 1] as const};
+  });
+}
+
+/** r_l + diagonal_(l+1) <= (1 - m) r_(l+1) wherever level l is shown at all. */
+function expectTight(levels: readonly Level[], ranges: Ranges) {
+  for (let l = 0; l + 1 < ranges.length; ++l) {
+    if (ranges[l] === 0) continue;
+    expect(ranges[l]! + levels[l + 1]!.diagonalM).toBeLessThan((1 - kMorphShare) * ranges[l + 1]!);
+  }
+}
+
+describe('wantedRanges', () => {
+  it('keeps neighbours within one level for any ladder', () => {
+    const random = randomSource(1);
+    for (let i = 0; i < 500; ++i) {
+      const levels = randomLevels(random);
+      expectTight(levels, wantedRanges(levels, 500, 0.5 * 32 ** random()));
+    }
+  });
+
+  it('never lets a tolerance cover more pixels than wanted', () => {
+    const random = randomSource(2);
+    for (let i = 0; i < 500; ++i) {
+      const levels = randomLevels(random);
+      const tolerancePx = 0.5 * 32 ** random();
+      wantedRanges(levels, 500, tolerancePx).forEach((range, l) =>
+        expect((levels[l + 1]!.toleranceM * 500) / range).toBeLessThanOrEqual(tolerancePx * (1 + 1e-12)),
+      );
+    }
+  });
+
+  it('is the error alone where boxes are small', () => {
+    const levels = [1, 2, 4].map((toleranceM, level) => ({
+      level,
+      toleranceM,
+      diagonalM: 1e-6,
+      stepM: [1, 1, 1] as const,
+    }));
+    expect(wantedRanges(levels, 500, 2)).toEqual([500, 1000]);
+  });
+});
+
+describe('reducedRanges', () => {
+  it('keeps neighbours within one level for any share', () => {
+    const random = randomSource(3);
+    for (let i = 0; i < 500; ++i) {
+      const levels = randomLevels(random);
+      expectTight(levels, reducedRanges(levels, wantedRanges(levels, 500, 2), random()));
+    }
+  });
+
+  it('goes from the root alone to what is wanted', () => {
+    const levels = randomLevels(randomSource(4));
+    const wanted = wantedRanges(levels, 500, 2);
+    expect(reducedRanges(levels, wanted, 0).every((range) => range === 0)).toBe(true);
+    reducedRanges(levels, wanted, 1).forEach((range, l) => expect(range).toBeCloseTo(wanted[l]!, 6));
+  });
+
+  it('grows with the share', () => {
+    const levels = randomLevels(randomSource(5));
+    const wanted = wantedRanges(levels, 500, 2);
+    let last = reducedRanges(levels, wanted, 0);
+    for (let share = 0.01; share <= 1; share += 0.01) {
+      const ranges = reducedRanges(levels, wanted, share);
+      ranges.forEach((range, l) => expect(range).toBeGreaterThanOrEqual(last[l]!));
+      last = ranges;
+    }
+  });
+});
+
+describe('morphInterval', () => {
+  it('ends below the range, so that float32 distances from it on are at t = 1', () => {
+    const {beginM, endM} = morphInterval(1000);
+    expect(beginM).toBe(750);
+    expect(endM).toBeLessThan(1000 * (1 - 1e-4));
+    expect(endM).toBeGreaterThan(beginM);
+  });
+});
+
+describe('pixelsPerRadian', () => {
+  it('is half the picture for an opening angle of 90 degrees', () => {
+    expect(pixelsPerRadian(480, 90)).toBeCloseTo(240, 9);
+  });
+});

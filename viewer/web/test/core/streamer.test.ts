@@ -1,0 +1,116 @@
+import {describe, expect, it} from 'vitest';
+import {Streamer, type Frame, type View} from '../../src/core/streamer';
+import {tilesOf, type Tile} from '../../src/core/tileset';
+import {kLeafM, quadtree} from './quadtree';
+
+const kTop = 3;
+const kTileBytes = 1000;
+
+interface Fake {
+  readonly key: string;
+  readonly bytes: number;
+}
+
+interface World {
+  readonly streamer: Streamer<Fake>;
+  readonly dropped: string[];
+  readonly broken: Set<string>;
+  /** Answers the oldest open requests. */
+  readonly answer: (count: number) => Promise<void>;
+}
+
+/** A streamer whose tiles arrive when the test says so, except the broken ones. */
+function makeWorld(cacheBytes?: number): World {
+  const dropped: string[] = [];
+  const broken = new Set<string>();
+  const open: (() => void)[] = [];
+  const fetchTile = async (tile: Tile): Promise<Fake> => {
+    await new Promise<void>((resolve) => open.push(resolve));
+    if (broken.has(tile.key)) throw new Error(`${tile.key}: status 404`);
+    return {key: tile.key, bytes: kTileBytes};
+  };
+  const answer = async (count: number) => {
+    for (const resolve of open.splice(0, count)) resolve();
+    await new Promise((resolve) => setTimeout(resolve, 0));
+  };
+  const events = {onDrop: (fake: Fake) => void dropped.push(fake.key), onChange: () => {}};
+  const streamer = new Streamer(quadtree(kTop), fetchTile, events, cacheBytes);
+  return {streamer, dropped, broken, answer};
+}
+
+function viewFrom(x: number, y: number, z: number): View {
+  return {eye: [x, y, z], pixelScale: 500, tolerancePx: 2, isInPicture: () => true};
+}
+
+/** Frames 50 ms apart; two tiles arrive between them. */
+async function* frames(world: World, view: View, count: number, startS = 0): AsyncGenerator<Frame> {
+  for (let i = 0; i < count; ++i) {
+    yield world.streamer.update(view, startS + 0.05 * i);
+    await world.answer(2);
+  }
+}
+
+/** Whether a cut covers all finest tiles once. */
+function isWhole(cut: readonly Tile[]): boolean {
+  const leaves = cut.flatMap((tile) => [...tilesOf(tile)].filter(({level}) => level === 0));
+  return leaves.length === 4 ** kTop && new Set(leaves.map(({key}) => key)).size === leaves.length;
+}
+
+describe('Streamer', () => {
+  it('shows a whole cut of loaded tiles in every frame once the root is there', async () => {
+    const world = makeWorld();
+    const levels: number[] = [];
+    for await (const frame of frames(world, viewFrom(1500, 1500, 300), 100)) {
+      if (frame.cut.length === 0) continue;
+      expect(isWhole(frame.cut)).toBe(true);
+      expect(frame.cut.every((tile) => world.streamer.content(tile))).toBe(true);
+      levels.push(Math.min(...frame.cut.map(({level}) => level)));
+    }
+    expect(levels[0]).toBe(kTop);
+    expect(levels.at(-1)).toBe(0);
+  });
+
+  it('settles with all wanted detail', async () => {
+    const world = makeWorld();
+    let last: Frame | undefined;
+    for await (const frame of frames(world, viewFrom(1500, 1500, 300), 100)) last = frame;
+    expect(last!.settled).toBe(true);
+    expect(last!.loaded).toBe(last!.wanted);
+  });
+
+  it('never shows more detail from one frame to the next than the glide allows', async () => {
+    const world = makeWorld();
+    let lastShare = 0;
+    for await (const frame of frames(world, viewFrom(1500, 1500, 300), 60)) {
+      expect(frame.share - lastShare).toBeLessThanOrEqual(1.5 * 0.25 + 1e-9);
+      lastShare = frame.share;
+    }
+  });
+
+  it('keeps the parent of a failed tile, says so, and recovers', async () => {
+    const world = makeWorld();
+    world.broken.add('0/1/1');
+    const view = viewFrom(1.5 * kLeafM, 1.5 * kLeafM, 300);
+    for await (const frame of frames(world, view, 100)) {
+      if (frame.cut.length > 0) expect(isWhole(frame.cut)).toBe(true);
+      expect(frame.cut.some(({key}) => key === '0/1/1')).toBe(false);
+    }
+    expect([...world.streamer.failures.values()][0]!.message).toBe('0/1/1: status 404');
+
+    world.broken.clear();
+    let last: Frame | undefined;
+    for await (const frame of frames(world, view, 100, 100)) last = frame;
+    expect(world.streamer.failures.size).toBe(0);
+    expect(last!.cut.some(({key}) => key === '0/1/1')).toBe(true);
+  });
+
+  it('drops tiles that are out of use, never those of the cut', async () => {
+    const world = makeWorld(5 * kTileBytes);
+    for await (const _ of frames(world, viewFrom(500, 500, 100), 100));
+    expect(world.dropped).toEqual([]);
+    for await (const frame of frames(world, viewFrom(7500, 7500, 60000), 100, 10)) {
+      expect(frame.cut.every((tile) => world.streamer.content(tile))).toBe(true);
+    }
+    expect(world.dropped.length).toBeGreaterThan(0);
+  });
+});
