@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tiler/verify/placed_mesh.h"
+#include "tiler/verify/sample_block.h"
+
+namespace terrane::verify {
+
+/// How a mesh covers a sample, worst first.
+enum class Cover : std::uint8_t {
+  kNone,  ///< no triangle above or below
+  kNear,  ///< the mesh ends within one lattice step of the sample
+  kHit    ///< the sample's vertical meets a triangle
+};
+
+/// One sample against one mesh.
+struct Verdict {
+  Cover cover = Cover::kNone;
+  double error_m = 0;  ///< |mesh - DEM| along the vertical; the worst, if several triangles are hit
+};
+
+/// What two meshes (neighbours, of which either may cover the sample) say together.
+Verdict merge(const Verdict& a, const Verdict& b);
+
+/// Judges every sample of a block against a tile at morph t. Samples that are no terrain get kNone.
+///
+/// \param near_m  one lattice step in plan: how far from the outline a sample may lie.
+std::vector<Verdict> judge(const SampleBlock& block, const PlacedMesh& mesh, double t,
+                           double near_m);
+
+}  // namespace terrane::verify

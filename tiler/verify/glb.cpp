@@ -1,0 +1,154 @@
+#include "tiler/verify/glb.h"
+
+#include <fmt/format.h>
+#include <meshoptimizer.h>
+
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "core/errors.h"
+
+namespace terrane::verify {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uint32_t kMagic = 0x46546C67;        // "glTF"
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;    // "JSON"
+constexpr std::uint32_t kBinaryChunk = 0x004E4942;  // "BIN\0"
+constexpr std::size_t kHeaderBytes = 12;
+constexpr std::size_t kChunkHeaderBytes = 8;
+constexpr std::size_t kMostElements = std::size_t{1} << 28;  // a damaged count must not eat memory
+
+constexpr int kShort = 5122;
+constexpr int kUnsignedShort = 5123;
+constexpr int kUnsignedInt = 5125;
+
+std::uint32_t word_at(const std::vector<unsigned char>& content, std::size_t offset) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, content.data() + offset, sizeof word);
+  return word;
+}
+
+}  // namespace
+
+void Glb::fail(const std::string& what) const {
+  throw InputError(fmt::format("{}: damaged tile ({}). Run 'terrane build' again with --force",
+                               file_.string(), what));
+}
+
+Glb Glb::read(const std::filesystem::path& file) {
+  Glb glb;
+  glb.file_ = file;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    throw InputError(fmt::format(
+        "{}: tileset.json lists it, but it is missing. Run 'terrane build' again with --force",
+        file.string()));
+  }
+  glb.content_.assign(std::istreambuf_iterator<char>(stream), {});
+  glb.split_chunks();
+  return glb;
+}
+
+void Glb::split_chunks() {
+  if (content_.size() < kHeaderBytes + kChunkHeaderBytes || word_at(content_, 0) != kMagic ||
+      word_at(content_, 4) != 2) {
+    fail("no binary glTF 2 header");
+  }
+  if (word_at(content_, 8) != content_.size()) {
+    fail(fmt::format("{} bytes, its header says {}", content_.size(), word_at(content_, 8)));
+  }
+  const std::size_t json_begin = kHeaderBytes + kChunkHeaderBytes;
+  const std::size_t json_size = word_at(content_, kHeaderBytes);
+  const std::size_t binary_header = json_begin + json_size;
+  if (word_at(content_, kHeaderBytes + 4) != kJsonChunk ||
+      binary_header + kChunkHeaderBytes > content_.size() ||
+      word_at(content_, binary_header + 4) != kBinaryChunk) {
+    fail("no JSON chunk followed by a binary one");
+  }
+  binary_begin_ = binary_header + kChunkHeaderBytes;
+  binary_size_ = word_at(content_, binary_header);
+  if (binary_begin_ + binary_size_ > content_.size()) fail("its binary chunk is cut off");
+  const auto begin = content_.begin() + static_cast<std::ptrdiff_t>(json_begin);
+  document_ = json::parse(begin, begin + static_cast<std::ptrdiff_t>(json_size), nullptr, false);
+  if (document_.is_discarded()) fail("its JSON does not parse");
+}
+
+std::vector<unsigned char> Glb::decode_view(std::size_t index, std::size_t& stride) const {
+  const json& view =
+      document_.at("bufferViews").at(index).at("extensions").at("EXT_meshopt_compression");
+  const auto offset = view.value("byteOffset", std::size_t{0});
+  const auto size = view.at("byteLength").get<std::size_t>();
+  const auto count = view.at("count").get<std::size_t>();
+  const auto mode = view.at("mode").get<std::string>();
+  stride = view.at("byteStride").get<std::size_t>();
+  if (view.at("buffer").get<int>() != 0 || offset > binary_size_ || size > binary_size_ - offset) {
+    fail(fmt::format("buffer view {} reaches past the end", index));
+  }
+  if (count > kMostElements || view.value("filter", "NONE") != "NONE") {
+    fail(fmt::format("buffer view {} has {} elements or a filter", index, count));
+  }
+  const bool is_attributes =
+      mode == "ATTRIBUTES" && stride >= 4 && stride <= 256 && stride % 4 == 0;
+  const bool is_triangles = mode == "TRIANGLES" && (stride == 2 || stride == 4) && count % 3 == 0;
+  if (!is_attributes && !is_triangles) {
+    fail(fmt::format("buffer view {}: mode {} with a stride of {}", index, mode, stride));
+  }
+  std::vector<unsigned char> decoded(count * stride);
+  const unsigned char* encoded = content_.data() + binary_begin_ + offset;
+  const int status = is_attributes
+                         ? meshopt_decodeVertexBuffer(decoded.data(), count, stride, encoded, size)
+                         : meshopt_decodeIndexBuffer(decoded.data(), count, stride, encoded, size);
+  if (status != 0) fail(fmt::format("buffer view {} does not decompress", index));
+  return decoded;
+}
+
+Glb::View Glb::view_of(const json& accessor, std::size_t element_bytes) const {
+  View view;
+  view.bytes = decode_view(accessor.at("bufferView").get<std::size_t>(), view.stride);
+  const auto offset = accessor.value("byteOffset", std::size_t{0});
+  const auto count = accessor.at("count").get<std::size_t>();
+  const bool fits =
+      count == 0 ||
+      (count <= kMostElements && element_bytes <= view.stride && offset <= view.bytes.size() &&
+       offset + (count - 1) * view.stride + element_bytes <= view.bytes.size());
+  if (!fits) fail("an accessor reaches past its buffer view");
+  view.bytes.erase(view.bytes.begin(),
+                   view.bytes.begin() + static_cast<std::ptrdiff_t>(count == 0 ? 0 : offset));
+  return view;
+}
+
+std::vector<Glb::ShortVector> Glb::short_vectors(const json& accessor_index) const {
+  const json& accessor = document_.at("accessors").at(accessor_index.get<std::size_t>());
+  if (accessor.at("componentType") != kShort || accessor.at("type") != "VEC3") {
+    fail("a vertex attribute is not SHORT VEC3");
+  }
+  const View view = view_of(accessor, sizeof(ShortVector));
+  std::vector<ShortVector> vectors(accessor.at("count").get<std::size_t>());
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    std::memcpy(vectors[i].data(), view.bytes.data() + i * view.stride, sizeof(ShortVector));
+  }
+  return vectors;
+}
+
+std::vector<std::uint32_t> Glb::indices(const json& accessor_index) const {
+  const json& accessor = document_.at("accessors").at(accessor_index.get<std::size_t>());
+  const int type = accessor.at("componentType").get<int>();
+  if ((type != kUnsignedShort && type != kUnsignedInt) || accessor.at("type") != "SCALAR") {
+    fail("indices are not UNSIGNED SHORT or INT");
+  }
+  const std::size_t element_bytes = type == kUnsignedShort ? 2 : 4;
+  const View view = view_of(accessor, element_bytes);
+  // the type and the stride must agree, or every second index would be read as zero
+  if (view.stride != element_bytes) fail("indices are packed in another width than their type");
+  std::vector<std::uint32_t> indices(accessor.at("count").get<std::size_t>(), 0);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    std::memcpy(&indices[i], view.bytes.data() + i * view.stride, element_bytes);
+  }
+  return indices;
+}
+
+}  // namespace terrane::verify

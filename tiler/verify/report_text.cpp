@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "tiler/verify/report.h"
+
+namespace terrane::verify {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Buffer = std::back_insert_iterator<std::string>;
+
+void print_errors(const VerifyReport& report, Buffer out) {
+  fmt::format_to(out, "{:>5} {:>11} {:>7} {:>10} {:>11} {:>11} {:>11} {:>9} {:>9} {:>7}\n", "level",
+                 "tolerance_m", "tiles", "triangles", "bytes", "max_error_m", "rms_error_m", "over",
+                 "uncovered", "folded");
+  for (const LevelReport& level : report.levels) {
+    fmt::format_to(out,
+                   "{:>5} {:>11.6g} {:>7} {:>10} {:>11} {:>11.5g} {:>11.5g} {:>9} {:>9} {:>7}\n",
+                   level.level, level.tolerance_m, level.tiles, level.triangles, level.bytes,
+                   level.max_error_m, level.rms_error_m, level.samples_over_tolerance,
+                   level.uncovered_samples, level.folded_triangles);
+  }
+}
+
+void print_seams(const VerifyReport& report, Buffer out) {
+  fmt::format_to(out, "\n{:>5} {:>13} {:>10} {:>10} {:>6} {:>14} {:>12}\n", "level",
+                 "seam_vertices", "mismatched", "across_lod", "torn", "parent_missing",
+                 "parent_extra");
+  for (const LevelReport& level : report.levels) {
+    fmt::format_to(out, "{:>5} {:>13} {:>10} {:>10} {:>6} {:>14} {:>12}\n", level.level,
+                   level.seam_vertices, level.mismatched_same_level, level.mismatched_across_levels,
+                   level.torn_edges, level.parent_triangles_missing, level.parent_triangles_extra);
+  }
+}
+
+void print_morphs(const VerifyReport& report, Buffer out) {
+  fmt::format_to(out, "\n{:>5} {:>5} {:>11} {:>9} {:>9} {:>7}\n", "level", "t", "max_error_m",
+                 "over", "uncovered", "folded");
+  for (const LevelReport& level : report.levels) {
+    if (!level.has_morph) continue;
+    for (const MorphReport& morph : level.morph) {
+      fmt::format_to(out, "{:>5} {:>5} {:>11.5g} {:>9} {:>9} {:>7}\n", level.level, morph.t,
+                     morph.max_error_m, morph.samples_over_tolerance, morph.uncovered_samples,
+                     morph.folded_triangles);
+    }
+  }
+}
+
+void print_listing(const VerifyReport& report, Buffer out) {
+  fmt::format_to(out, "\n{:>5} {:>6} {:>7} {:>11} {:>8} {:>11} {:>10} {:>12}\n", "level", "boxes",
+                 "nesting", "understated", "missing", "unexpected", "misstated", "root_morphs");
+  for (const LevelReport& level : report.levels) {
+    fmt::format_to(out, "{:>5} {:>6} {:>7} {:>11} {:>8} {:>11} {:>10} {:>12}\n", level.level,
+                   level.boxes_violated, level.nested_errors_violated, level.stated_error_too_small,
+                   level.tiles_missing, level.tiles_unexpected, level.facts_misstated,
+                   level.root_morphs);
+  }
+}
+
+Json to_json(const MorphReport& morph) {
+  return {{"t", morph.t},
+          {"max_error_m", morph.max_error_m},
+          {"samples_over_tolerance", morph.samples_over_tolerance},
+          {"uncovered_samples", morph.uncovered_samples},
+          {"folded_triangles", morph.folded_triangles}};
+}
+
+Json to_json(const LevelReport& level) {
+  Json object = {{"level", level.level},
+                 {"holds", level.holds()},
+                 {"tolerance_m", level.tolerance_m},
+                 {"tiles", level.tiles},
+                 {"triangles", level.triangles},
+                 {"bytes", level.bytes},
+                 {"max_error_m", level.max_error_m},
+                 {"rms_error_m", level.rms_error_m},
+                 {"samples", level.samples},
+                 {"uncovered_samples", level.uncovered_samples},
+                 {"samples_over_tolerance", level.samples_over_tolerance},
+                 {"folded_triangles", level.folded_triangles},
+                 {"seam_vertices", level.seam_vertices},
+                 {"mismatched_same_level", level.mismatched_same_level},
+                 {"mismatched_across_levels", level.mismatched_across_levels},
+                 {"torn_edges", level.torn_edges},
+                 {"parent_triangles_missing", level.parent_triangles_missing},
+                 {"parent_triangles_extra", level.parent_triangles_extra},
+                 {"root_morphs", level.root_morphs},
+                 {"boxes_violated", level.boxes_violated},
+                 {"nested_errors_violated", level.nested_errors_violated},
+                 {"stated_error_too_small", level.stated_error_too_small},
+                 {"tiles_missing", level.tiles_missing},
+                 {"tiles_unexpected", level.tiles_unexpected},
+                 {"facts_misstated", level.facts_misstated},
+                 {"morph", Json::array()}};
+  if (!level.has_morph) return object;
+  for (const MorphReport& morph : level.morph) object["morph"].push_back(to_json(morph));
+  return object;
+}
+
+}  // namespace
+
+std::string to_text(const VerifyReport& report) {
+  std::string text;
+  const Buffer out = std::back_inserter(text);
+  print_errors(report, out);
+  print_seams(report, out);
+  print_morphs(report, out);
+  print_listing(report, out);
+  text += '\n';
+  for (const std::string& problem : report.problems) fmt::format_to(out, "{}\n", problem);
+  if (report.problems_left_out > 0) {
+    fmt::format_to(out, "... and {} more problems\n", report.problems_left_out);
+  }
+  text += report.holds() ? "All invariants hold.\n" : "NOT all invariants hold.\n";
+  return text;
+}
+
+std::string to_json(const VerifyReport& report) {
+  Json object = {{"holds", report.holds()}, {"levels", Json::array()}};
+  for (const LevelReport& level : report.levels) object["levels"].push_back(to_json(level));
+  object["problems"] = report.problems;
+  object["problems_left_out"] = report.problems_left_out;
+  return object.dump(2) + "\n";
+}
+
+}  // namespace terrane::verify

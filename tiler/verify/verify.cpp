@@ -1,0 +1,467 @@
+#include "tiler/verify/verify.h"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+
+#include "core/errors.h"
+#include "tiler/verify/listing_check.h"
+#include "tiler/verify/output.h"
+#include "tiler/verify/sample_tally.h"
+#include "tiler/verify/tile_examination.h"
+
+namespace terrane::verify {
+namespace {
+
+// 4 x 4 leaf tiles and the 5 above them are read and judged side by side
+constexpr int kBatchLevel = 2;
+constexpr std::size_t kMostLinesOfOneKind = 40;
+constexpr double kStatedSlack = 1e-6;
+constexpr double kStatedSlack_m = 1e-9;
+
+bool is_understated(double stated_m, double measured_m) {
+  return !(measured_m <= stated_m * (1 + kStatedSlack) + kStatedSlack_m);
+}
+
+void add_problems(const std::vector<std::string>& lines, VerifyReport& report) {
+  const std::size_t shown = std::min(lines.size(), kMostLinesOfOneKind);
+  report.problems.insert(report.problems.end(), lines.begin(),
+                         lines.begin() + static_cast<std::ptrdiff_t>(shown));
+  report.problems_left_out += static_cast<std::int64_t>(lines.size() - shown);
+}
+
+Side opposite(Side side) {
+  switch (side) {
+    case Side::kWest:
+      return Side::kEast;
+    case Side::kEast:
+      return Side::kWest;
+    case Side::kNorth:
+      return Side::kSouth;
+    case Side::kSouth:
+      break;
+  }
+  return Side::kNorth;
+}
+
+TileKey neighbour(const TileKey& key, Side side) {
+  switch (side) {
+    case Side::kWest:
+      return {key.level, key.x - 1, key.y};
+    case Side::kEast:
+      return {key.level, key.x + 1, key.y};
+    case Side::kNorth:
+      return {key.level, key.x, key.y - 1};
+    case Side::kSouth:
+      break;
+  }
+  return {key.level, key.x, key.y + 1};
+}
+
+bool is_on_side(const TileKey& child, Side side) {
+  switch (side) {
+    case Side::kWest:
+      return child.x % 2 == 0;
+    case Side::kEast:
+      return child.x % 2 == 1;
+    case Side::kNorth:
+      return child.y % 2 == 0;
+    case Side::kSouth:
+      break;
+  }
+  return child.y % 2 == 1;
+}
+
+constexpr std::array<Side, 4> kSides = {Side::kWest, Side::kEast, Side::kNorth, Side::kSouth};
+
+/// How many units of the finer lattice one of the coarser is, per axis.
+Lattice steps_ratio(const LevelEntry& fine, const LevelEntry& coarse) {
+  Lattice ratio;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto n = static_cast<Eigen::Index>(axis);
+    ratio[axis] = std::llround(coarse.step_m[n] / fine.step_m[n]);
+  }
+  return ratio;
+}
+
+Lattice scaled(const Lattice& place, const Lattice& ratio) {
+  return {place[0] * ratio[0], place[1] * ratio[1], place[2] * ratio[2]};
+}
+
+/// Judges the samples of one leaf block against the tiles above it, at every level and time.
+class BlockJudge {
+ public:
+  BlockJudge(const Output& output, const std::map<TileKey, TileFindings>& open)
+      : output_(output), open_(open) {}
+
+  BlockFindings judge_block(const SampleBlock& block) const {
+    BlockFindings findings{.leaf = block.leaf, .window = block.window};
+    findings.rim = rim_of(block);
+    const int levels = static_cast<int>(output_.levels.size());
+    for (int level = 0; level < levels; ++level) {
+      const int times = level + 1 == levels ? 1 : static_cast<int>(kTimes.size());
+      for (int time = 0; time < times; ++time) judge_slot(block, {level, time}, findings);
+    }
+    return findings;
+  }
+
+ private:
+  static std::vector<SamplePlace> rim_of(const SampleBlock& block) {
+    std::vector<SamplePlace> rim;
+    for_each_terrain_sample(block, [&](std::int64_t column, std::int64_t row) {
+      if (block.is_rim(column, row)) rim.push_back({column, row});
+    });
+    return rim;
+  }
+
+  template <typename Visit>
+  static void for_each_terrain_sample(const SampleBlock& block, Visit visit) {
+    const Window& window = block.window;
+    for (std::int64_t row = window.row; row < window.row + window.rows; ++row) {
+      for (std::int64_t column = window.column; column < window.column + window.columns; ++column) {
+        if (block.at(column, row).is_terrain) visit(column, row);
+      }
+    }
+  }
+
+  std::vector<Verdict> verdicts_of(const SampleBlock& block, const Slot& slot) const {
+    const TileKey& leaf = block.leaf;
+    const auto& tile = open_.at({slot.level, leaf.x >> slot.level, leaf.y >> slot.level});
+    if (!tile.placed) return std::vector<Verdict>(block.samples.size());
+    const double near_m = slot.time == 0
+                              ? output_.levels[static_cast<std::size_t>(slot.level)].plan_step_m()
+                              : output_.reach_m(slot.level);
+    return judge(block, *tile.placed, kTimes[static_cast<std::size_t>(slot.time)], near_m);
+  }
+
+  void judge_slot(const SampleBlock& block, const Slot& slot, BlockFindings& findings) const {
+    const std::vector<Verdict> verdicts = verdicts_of(block, slot);
+    const double limit_m = tolerance_m(output_.levels, slot) * (1 + 1e-9);
+    BlockFindings::OfSlot of_slot{.slot = slot, .inside = {}, .rim = {}};
+    for_each_terrain_sample(block, [&](std::int64_t column, std::int64_t row) {
+      const Verdict& verdict = verdicts[block.index(column, row)];
+      if (block.is_rim(column, row)) {
+        of_slot.rim.push_back(verdict);
+      } else {
+        of_slot.inside.add(verdict, {column, row}, limit_m);
+      }
+    });
+    findings.slots.push_back(std::move(of_slot));
+  }
+
+  const Output& output_;
+  const std::map<TileKey, TileFindings>& open_;
+};
+
+/// Walks the quadtree depth first, so that only tiles between the root and one batch are in memory.
+class Verification {
+ public:
+  Verification(const Output& output, const HeightSource& heights, const World& world,
+               const ValidDomain& domain, Progress& progress)
+      : output_(output),
+        heights_(heights),
+        world_(world),
+        domain_(domain),
+        progress_(progress),
+        samples_(output.tiling, output.levels) {
+    for (std::size_t level = 0; level < output.levels.size(); ++level) {
+      report_.levels.push_back({.level = static_cast<int>(level),
+                                .tolerance_m = output.levels[level].tolerance_m,
+                                .has_morph = level + 1 < output.levels.size()});
+    }
+  }
+
+  VerifyReport run() {
+    const Tiling& tiling = output_.tiling;
+    const std::vector<std::string> listing = check_listing(output_, world_, domain_, report_);
+    progress_.begin("verifying tiles", tiling.tile_columns(0) * tiling.tile_rows(0));
+    visit({tiling.level_count() - 1, 0, 0});
+    take_samples();
+    check_levels();
+    add_problems(listing, report_);
+    add_problems(samples_.problems(), report_);
+    add_problems(problems_, report_);
+    return std::move(report_);
+  }
+
+ private:
+  LevelReport& level(const TileKey& key) {
+    return report_.levels[static_cast<std::size_t>(key.level)];
+  }
+
+  void visit(const TileKey& key) {
+    if (key.level <= kBatchLevel) {
+      visit_batch(key);
+      return;
+    }
+    examine({key});
+    for (const TileKey& child : output_.tiling.children(key)) visit(child);
+    finish(key);
+  }
+
+  void visit_batch(const TileKey& key) {
+    const std::vector<TileKey> keys = output_.tiling.subtree(key);
+    examine(keys);
+    std::vector<TileKey> leaves;
+    std::copy_if(keys.begin(), keys.end(), std::back_inserter(leaves),
+                 [](const TileKey& tile) { return tile.level == 0; });
+    judge_leaves(leaves);
+    for (const TileKey& tile : keys) finish(tile);
+    progress_.advance(static_cast<std::int64_t>(leaves.size()));
+  }
+
+  void examine(const std::vector<TileKey>& keys) {
+    std::vector<TileFindings> findings(keys.size());
+    tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t n) {
+      findings[n] = examine_tile(output_, world_, domain_, keys[n]);
+    });
+    for (TileFindings& found : findings) open_.emplace(found.key, std::move(found));
+  }
+
+  void judge_leaves(const std::vector<TileKey>& leaves) {
+    const BlockJudge judge(output_, open_);
+    std::vector<BlockFindings> findings(leaves.size());
+    tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
+      findings[n] =
+          judge.judge_block(read_sample_block(heights_, world_, output_.tiling, leaves[n]));
+    });
+    // added up in the order of the walk, whoever judged them
+    for (const BlockFindings& found : findings) {
+      samples_.add(found);
+      note_measured(found);
+    }
+  }
+
+  void note_measured(const BlockFindings& found) {
+    for (const auto& of_slot : found.slots) {
+      if (of_slot.slot.time != 0) continue;
+      const int number = of_slot.slot.level;
+      double& measured_m =
+          open_.at({number, found.leaf.x >> number, found.leaf.y >> number}).measured_error_m;
+      measured_m = std::max(measured_m, of_slot.inside.max_error_m);
+      for (const Verdict& verdict : of_slot.rim) measured_m = std::max(measured_m, verdict.error_m);
+    }
+  }
+
+  /// Everything below the tile has been judged: compares it with its children and neighbours.
+  void finish(const TileKey& key) {
+    TileFindings& tile = open_.at(key);
+    count(tile);
+    for (const Side side : kSides) compare_seam(tile, side);
+    if (key.level > 0) compare_children(tile);
+    for (const TileKey& child : output_.tiling.children(key)) open_.erase(child);
+    tile.placed.reset();
+  }
+
+  void count(const TileFindings& tile) {
+    if (!tile.placed) return;
+    LevelReport& of_level = level(tile.key);
+    const TileMesh& mesh = tile.placed->mesh();
+    ++of_level.tiles;
+    of_level.triangles += static_cast<std::int64_t>(mesh.triangles.size());
+    of_level.bytes += mesh.bytes;
+    of_level.folded_triangles += tile.folded[0];
+    for (std::size_t n = 0; n < of_level.morph.size(); ++n) {
+      of_level.morph[n].folded_triangles += tile.folded[n + 1];
+    }
+    of_level.torn_edges += tile.torn_edges;
+    of_level.boxes_violated += tile.vertices_outside_box > 0;
+    of_level.facts_misstated += static_cast<std::int64_t>(tile.misstated.size());
+    for (const std::string& what : tile.misstated) {
+      problems_.push_back(fmt::format("{}: {}", to_string(tile.key), what));
+    }
+    problems_.insert(problems_.end(), tile.problems.begin(), tile.problems.end());
+    check_root_morph(tile);
+    check_stated_error(tile);
+  }
+
+  void check_root_morph(const TileFindings& tile) {
+    if (level(tile.key).has_morph || tile.vertices_with_morph == 0) return;
+    level(tile.key).root_morphs += tile.vertices_with_morph;
+    problems_.push_back(fmt::format("{}: {} vertices of the root have a _MORPH",
+                                    to_string(tile.key), tile.vertices_with_morph));
+  }
+
+  void check_stated_error(const TileFindings& tile) {
+    const double stated_m = output_.find(tile.key)->max_error_m;
+    if (!is_understated(stated_m, tile.measured_error_m)) return;
+    ++level(tile.key).stated_error_too_small;
+    problems_.push_back(fmt::format("{}: its error is stated as {} m, measured are {} m",
+                                    to_string(tile.key), stated_m, tile.measured_error_m));
+  }
+
+  /// The second of two neighbours to be finished compares; the first leaves its vertices behind.
+  void compare_seam(TileFindings& tile, Side side) {
+    const TileKey other = neighbour(tile.key, side);
+    if (!output_.tiling.has(other)) return;
+    const SeamVertices& mine = tile.sides[static_cast<std::size_t>(side)];
+    const auto waiting = waiting_sides_.find({other, opposite(side)});
+    if (waiting == waiting_sides_.end()) {
+      waiting_sides_.emplace(std::pair(tile.key, side), mine);
+      return;
+    }
+    LevelReport& of_level = level(tile.key);
+    of_level.seam_vertices += static_cast<std::int64_t>(unite(mine, waiting->second).size());
+    const SeamVertices differing = difference(mine, waiting->second);
+    of_level.mismatched_same_level += static_cast<std::int64_t>(differing.size());
+    note_mismatch(tile.key, side, differing, fmt::format("and {}", to_string(other)));
+    waiting_sides_.erase(waiting);
+  }
+
+  void note_mismatch(const TileKey& key, Side side, const SeamVertices& differing,
+                     const std::string& partner) {
+    if (differing.empty()) return;
+    const Line line = side_line(output_.tiling.window(key), side);
+    problems_.push_back(
+        fmt::format("{} {}: {} border vertices differ, the first at ({} {}, {} {:.2f})",
+                    to_string(key), partner, differing.size(), line.is_column ? "column" : "row",
+                    line.at, line.is_column ? "row" : "column", differing.front().along));
+  }
+
+  void compare_children(const TileFindings& tile) {
+    const auto fine = static_cast<std::size_t>(tile.key.level) - 1;
+    const Lattice ratio = steps_ratio(output_.levels[fine], output_.levels[fine + 1]);
+    compare_triangles(tile, ratio);
+    for (const Side side : kSides) compare_side_with_children(tile, side, ratio);
+  }
+
+  void compare_triangles(const TileFindings& tile, const Lattice& ratio) {
+    std::vector<LatticeTriangle> expected = tile.at_rest;
+    for (LatticeTriangle& triangle : expected) {
+      for (Lattice& corner : triangle) corner = scaled(corner, ratio);
+    }
+    std::vector<LatticeTriangle> found;
+    for (const TileKey& child : output_.tiling.children(tile.key)) {
+      const auto& triangles = open_.at(child).at_next_level;
+      found.insert(found.end(), triangles.begin(), triangles.end());
+    }
+    std::sort(expected.begin(), expected.end());
+    std::sort(found.begin(), found.end());
+    std::vector<LatticeTriangle> missing;
+    std::vector<LatticeTriangle> extra;
+    std::set_difference(expected.begin(), expected.end(), found.begin(), found.end(),
+                        std::back_inserter(missing));
+    std::set_difference(found.begin(), found.end(), expected.begin(), expected.end(),
+                        std::back_inserter(extra));
+    note_shape(tile.key, missing.size(), extra.size());
+  }
+
+  void note_shape(const TileKey& parent, std::size_t missing, std::size_t extra) {
+    if (missing == 0 && extra == 0) return;
+    LevelReport& of_children = report_.levels[static_cast<std::size_t>(parent.level) - 1];
+    of_children.parent_triangles_missing += static_cast<std::int64_t>(missing);
+    of_children.parent_triangles_extra += static_cast<std::int64_t>(extra);
+    problems_.push_back(fmt::format(
+        "{}: its children at t = 1 lack {} of its triangles and have {} that it has not",
+        to_string(parent), missing, extra));
+  }
+
+  void compare_side_with_children(const TileFindings& tile, Side side, const Lattice& ratio) {
+    SeamVertices expected = tile.sides[static_cast<std::size_t>(side)];
+    for (SeamVertex& vertex : expected) {
+      vertex.place = scaled(vertex.place, ratio);
+      vertex.morph = {};  // the parent's own way on does not matter here
+    }
+    expected = at_next_level(expected);
+    SeamVertices found;
+    for (const TileKey& child : output_.tiling.children(tile.key)) {
+      if (!is_on_side(child, side)) continue;
+      const SeamVertices& vertices = open_.at(child).sides[static_cast<std::size_t>(side)];
+      found = unite(found, at_next_level(vertices));
+    }
+    const SeamVertices differing = difference(expected, found);
+    report_.levels[static_cast<std::size_t>(tile.key.level) - 1].mismatched_across_levels +=
+        static_cast<std::int64_t>(differing.size());
+    note_mismatch(tile.key, side, differing, "and its children at t = 1");
+  }
+
+  void take_samples() {
+    for (LevelReport& of_level : report_.levels) {
+      const Tally& tally = samples_.of({of_level.level, 0});
+      of_level.max_error_m = tally.max_error_m;
+      of_level.samples = tally.samples;
+      of_level.uncovered_samples = tally.uncovered;
+      of_level.samples_over_tolerance = tally.over_tolerance;
+      const auto covered = static_cast<double>(tally.samples - tally.uncovered);
+      of_level.rms_error_m = covered > 0 ? std::sqrt(tally.square_sum_m2 / covered) : 0;
+      for (int time = 1; of_level.has_morph && time < static_cast<int>(kTimes.size()); ++time) {
+        const Tally& morphing = samples_.of({of_level.level, time});
+        MorphReport& morph = of_level.morph[static_cast<std::size_t>(time) - 1];
+        morph.max_error_m = morphing.max_error_m;
+        morph.samples_over_tolerance = morphing.over_tolerance;
+        morph.uncovered_samples = morphing.uncovered;
+      }
+    }
+  }
+
+  void check_levels() {
+    for (LevelReport& found : report_.levels) {
+      const LevelEntry& stated = output_.levels[static_cast<std::size_t>(found.level)];
+      check_count(found, "tiles", stated.tiles, found.tiles);
+      check_count(found, "triangles", stated.triangles, found.triangles);
+      check_count(found, "bytes", stated.bytes, found.bytes);
+      if (!is_understated(stated.max_error_m, found.max_error_m)) continue;
+      ++found.facts_misstated;
+      problems_.push_back(
+          fmt::format("terrane.json: level {} states an error of {} m, measured are {} m",
+                      found.level, stated.max_error_m, found.max_error_m));
+    }
+  }
+
+  void check_count(LevelReport& of_level, const char* what, std::int64_t stated,
+                   std::int64_t found) {
+    if (stated == found) return;
+    ++of_level.facts_misstated;
+    problems_.push_back(fmt::format("terrane.json: level {} states {} {}, the tiles have {}",
+                                    of_level.level, stated, what, found));
+  }
+
+  const Output& output_;
+  const HeightSource& heights_;
+  const World& world_;
+  const ValidDomain& domain_;
+  Progress& progress_;
+  SampleTally samples_;
+  VerifyReport report_;
+  std::vector<std::string> problems_;
+  std::map<TileKey, TileFindings> open_;
+  std::map<std::pair<TileKey, Side>, SeamVertices> waiting_sides_;
+};
+
+void check_dem(const Output& output, const HeightSource& heights, const Georeference& place) {
+  const auto file = (output.folder / "terrane.json").string();
+  const GridShape& built = output.tiling.shape;
+  const GridShape given = heights.shape();
+  if (given != built) {
+    throw InputError(fmt::format(
+        "{}: built from a DEM of {} x {} samples, this one has {} x {}. Give the DEM it was built "
+        "from with --dem",
+        file, built.columns, built.rows, given.columns, given.rows));
+  }
+  if (!output.frame.is_local && place.crs_wkt().empty()) {
+    throw InputError(fmt::format(
+        "{}: its frame is on the Earth, but the DEM has no CRS. Give the --crs it was built with",
+        file));
+  }
+}
+
+}  // namespace
+
+VerifyReport verify(const std::filesystem::path& folder, const HeightSource& heights,
+                    const Georeference& place, const VerifyOptions& options, Progress& progress) {
+  const Output output = read_output(folder);
+  check_dem(output, heights, place);
+  const World world(output.frame, place);
+  const ValidDomain domain(heights, output.tiling, progress);
+  tbb::task_arena arena(options.jobs > 0 ? options.jobs : tbb::task_arena::automatic);
+  VerifyReport report;
+  arena.execute([&] { report = Verification(output, heights, world, domain, progress).run(); });
+  return report;
+}
+
+}  // namespace terrane::verify
