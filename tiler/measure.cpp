@@ -8,50 +8,124 @@
 #include "hierarchy/collapse/sample_field.h"
 
 namespace terrane::tiler {
+namespace {
 
 using hierarchy::FieldPoint;
+using hierarchy::Place;
 
-MeasuredError measure(std::span<const hierarchy::Place> places,
-                      std::span<const hierarchy::Corners> triangles, const TileFrame& frame,
-                      const Lattice& lattice, int level, const HeightGrid& grid,
-                      const Window& window) {
-  const hierarchy::SampleField extent{window.columns, window.rows, {}};
-  // a sample on an edge is under two triangles: keep the worse, count it once
-  std::vector<double> worst(static_cast<std::size_t>(window.columns * window.rows), -1);
+FieldPoint field_point(const Place& place) {
+  return {hierarchy::column_of(place.plan), hierarchy::row_of(place.plan), 0};
+}
 
-  for (const hierarchy::Corners& corners : triangles) {
-    FieldPoint corner[3];
-    Eigen::Vector3d world[3];
-    for (int k = 0; k < 3; ++k) {
-      const hierarchy::Place& place = places[corners[k]];
-      corner[k] = {hierarchy::column_of(place.plan), hierarchy::row_of(place.plan), 0};
-      world[k] = lattice.world(place.lattice, level);
-    }
-    const Eigen::Vector3d normal = (world[1] - world[0]).cross(world[2] - world[0]);
-    for_each_span(corner[0], corner[1], corner[2], extent,
+class Measurement {
+ public:
+  Measurement(const TileFrame& frame, const Lattice& lattice, int level, const HeightGrid& grid,
+              const Window& window)
+      : frame_(frame),
+        lattice_(lattice),
+        level_(level),
+        grid_(grid),
+        window_(window),
+        extent_{window.columns, window.rows, {}},
+        worst_m_(static_cast<std::size_t>(window.columns * window.rows), kUnmeasured) {}
+
+  void add_triangle(const Place& a, const Place& b, const Place& c) {
+    const Eigen::Vector3d corner = world(a);
+    const Eigen::Vector3d normal = (world(b) - corner).cross(world(c) - corner);
+    for_each_span(field_point(a), field_point(b), field_point(c), extent_,
                   [&](std::int64_t row, std::int64_t first, std::int64_t last) {
                     for (std::int64_t column = first; column <= last; ++column) {
-                      const double height_m = grid.at(window.column + column, window.row + row);
-                      if (std::isnan(height_m)) continue;
-                      const Plumb plumb =
-                          frame.plumb(static_cast<double>(column), static_cast<double>(row));
-                      const double on_mesh_m =
-                          normal.dot(world[0] - plumb.base) / normal.dot(plumb.up);
-                      double& error = worst[static_cast<std::size_t>(row * window.columns + column)];
-                      error = std::max(error, std::abs(on_mesh_m - height_m));
+                      const Plumb plumb = plumb_at(column, row);
+                      add(column, row,
+                          normal.dot(corner - plumb.base) / normal.dot(plumb.up));
                     }
                     return true;
                   });
   }
 
-  MeasuredError result;
-  for (const double error : worst) {
-    if (error < 0) continue;
-    result.max_m = std::max(result.max_m, error);
-    result.sum_of_squares_m2 += error * error;
-    ++result.samples;
+  /// Measures what no triangle covers, but lies within a step of the edge.
+  void add_rim(const Place& a, const Place& b) {
+    const FieldPoint from = field_point(a), to = field_point(b);
+    const double reach = lattice_.step_m(level_).x() / frame_.spacing_m();
+    const auto first_column = std::ceil(std::min(from.column, to.column) - reach);
+    const auto last_column = std::floor(std::max(from.column, to.column) + reach);
+    const auto first_row = std::ceil(std::min(from.row, to.row) - reach);
+    const auto last_row = std::floor(std::max(from.row, to.row) + reach);
+    for (double row = std::max(0.0, first_row);
+         row <= std::min(last_row, static_cast<double>(window_.rows - 1)); ++row) {
+      for (double column = std::max(0.0, first_column);
+           column <= std::min(last_column, static_cast<double>(window_.columns - 1)); ++column) {
+        add_near_rim(static_cast<std::int64_t>(column), static_cast<std::int64_t>(row), a, b);
+      }
+    }
   }
-  return result;
+
+  MeasuredError result() const {
+    MeasuredError result;
+    for (const double error_m : worst_m_) {
+      if (error_m == kUnmeasured) continue;
+      result.max_m = std::max(result.max_m, error_m);
+      result.sum_of_squares_m2 += error_m * error_m;
+      ++result.samples;
+    }
+    return result;
+  }
+
+ private:
+  static constexpr double kUnmeasured = -1;
+
+  Eigen::Vector3d world(const Place& place) const { return lattice_.world(place.lattice, level_); }
+
+  Plumb plumb_at(std::int64_t column, std::int64_t row) const {
+    return frame_.plumb(static_cast<double>(column), static_cast<double>(row));
+  }
+
+  double& worst_m(std::int64_t column, std::int64_t row) {
+    return worst_m_[static_cast<std::size_t>(row * window_.columns + column)];
+  }
+
+  /// A sample on an edge is under two triangles: the worse one stays, and it counts once.
+  void add(std::int64_t column, std::int64_t row, double on_mesh_m) {
+    const double height_m = grid_.at(window_.column + column, window_.row + row);
+    if (std::isnan(height_m)) return;
+    worst_m(column, row) = std::max(worst_m(column, row), std::abs(on_mesh_m - height_m));
+  }
+
+  void add_near_rim(std::int64_t column, std::int64_t row, const Place& a, const Place& b) {
+    if (worst_m(column, row) != kUnmeasured) return;
+    const Plumb plumb = plumb_at(column, row);
+    const auto flat = [&](const Eigen::Vector3d& v) -> Eigen::Vector3d {
+      return v - v.dot(plumb.up) * plumb.up;
+    };
+    const Eigen::Vector3d from = world(a), along = world(b) - from;
+    const double length2 = std::max(flat(along).squaredNorm(), 1e-30);
+    const double t = std::clamp(flat(plumb.base - from).dot(flat(along)) / length2, 0.0, 1.0);
+    const Eigen::Vector3d nearest = from + t * along;
+    if (flat(nearest - plumb.base).norm() > lattice_.step_m(level_).x()) return;
+    add(column, row, (nearest - plumb.base).dot(plumb.up));
+  }
+
+  const TileFrame& frame_;
+  const Lattice& lattice_;
+  int level_;
+  const HeightGrid& grid_;
+  const Window& window_;
+  hierarchy::SampleField extent_;
+  std::vector<double> worst_m_;
+};
+
+}  // namespace
+
+MeasuredError measure(std::span<const Place> places,
+                      std::span<const hierarchy::Corners> triangles, std::span<const Edge> rim,
+                      const TileFrame& frame, const Lattice& lattice, int level,
+                      const HeightGrid& grid, const Window& window) {
+  Measurement measurement(frame, lattice, level, grid, window);
+  for (const auto& [a, b, c] : triangles) {
+    measurement.add_triangle(places[a], places[b], places[c]);
+  }
+  for (const auto& [a, b] : rim) measurement.add_rim(places[a], places[b]);
+  return measurement.result();
 }
 
 }  // namespace terrane::tiler

@@ -65,8 +65,8 @@ void HalfedgeMesh::pair_edges() {
   edges.reserve(start_.size());
   for (std::uint32_t i = 0; i < start_.size(); ++i) {
     const HalfedgeId h{i};
-    const auto [low, high] = std::minmax(static_cast<std::uint32_t>(start(h)),
-                                         static_cast<std::uint32_t>(end(h)));
+    const auto [low, high] = std::minmax({static_cast<std::uint32_t>(start(h)),
+                                          static_cast<std::uint32_t>(end(h))});
     edges.push_back({low, high, h});
   }
   std::sort(edges.begin(), edges.end());

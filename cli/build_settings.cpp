@@ -1,0 +1,162 @@
+#include "cli/build_settings.h"
+
+#include <functional>
+#include <map>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include "core/errors.h"
+#include "tiler/whole_file.h"
+
+namespace terrane::cli {
+namespace {
+
+/// One value of a file, with what an error about it has to say.
+struct Setting {
+  const std::filesystem::path& file;
+  std::string key;
+  const toml::node& node;
+
+  [[noreturn]] void refuse(std::string_view wanted) const {
+    throw ConfigError(fmt::format("{}:{}: {} must be {}", file.string(), node.source().begin.line,
+                                  key, wanted));
+  }
+
+  template <class T>
+  T as(std::string_view wanted) const {
+    const auto value = node.value_exact<T>();
+    if (!value) refuse(wanted);
+    return *value;
+  }
+
+  std::string text() const { return as<std::string>("a string"); }
+  int whole_number() const { return static_cast<int>(as<std::int64_t>("a whole number")); }
+  double real_number() const {
+    const auto value = node.value<double>();
+    if (!value || !node.is_number()) refuse("a number");
+    return *value;
+  }
+
+  std::vector<std::string> texts() const {
+    if (node.is_string()) return {text()};
+    std::vector<std::string> result;
+    if (!node.is_array()) refuse("a list of strings");
+    for (const toml::node& item : *node.as_array()) {
+      if (!item.is_string()) refuse("a list of strings");
+      result.push_back(**item.as_string());
+    }
+    return result;
+  }
+
+  std::string number_or_text() const {
+    if (node.is_string()) return text();
+    if (node.is_integer()) return fmt::format("{}", **node.as_integer());
+    return fmt::format("{}", real_number());
+  }
+};
+
+using Reader = std::function<void(const Setting&, BuildSettings&)>;
+
+// every key of a settings file; config/ explains them
+const std::map<std::string, Reader>& readers() {
+  static const std::map<std::string, Reader> known = {
+      {"ingest.dem", [](const Setting& s, BuildSettings& to) { to.dem = s.texts(); }},
+      {"ingest.band", [](const Setting& s, BuildSettings& to) { to.ingest.band = s.whole_number(); }},
+      {"ingest.nodata",
+       [](const Setting& s, BuildSettings& to) { to.ingest.nodata = s.number_or_text(); }},
+      {"ingest.vertical_unit",
+       [](const Setting& s, BuildSettings& to) {
+         const auto unit = ingest::parse_vertical_unit(s.text());
+         if (!unit) s.refuse("metre, foot or us-survey-foot");
+         to.ingest.vertical_unit = unit;
+       }},
+      {"ingest.crs", [](const Setting& s, BuildSettings& to) { to.ingest.crs = s.text(); }},
+      {"build.tolerance_m",
+       [](const Setting& s, BuildSettings& to) { to.build.tolerance_m = s.real_number(); }},
+      {"build.tile_cells",
+       [](const Setting& s, BuildSettings& to) { to.build.tile_cells = s.whole_number(); }},
+      {"build.jobs", [](const Setting& s, BuildSettings& to) { to.build.jobs = s.whole_number(); }},
+  };
+  return known;
+}
+
+std::string known_keys() {
+  std::string keys;
+  for (const auto& [key, reader] : readers()) keys += (keys.empty() ? "" : ", ") + key;
+  return keys;
+}
+
+void read_setting(const Setting& setting, BuildSettings& settings) {
+  const auto reader = readers().find(setting.key);
+  if (reader == readers().end()) {
+    throw ConfigError(fmt::format("{}:{}: unknown key {}. Known are: {}", setting.file.string(),
+                                  setting.node.source().begin.line, setting.key, known_keys()));
+  }
+  reader->second(setting, settings);
+}
+
+std::string quoted(const std::string& text) {
+  std::ostringstream stream;
+  stream << toml::value<std::string>(text);
+  return stream.str();
+}
+
+/// A path that means the same from everywhere; other sources ("NETCDF:...") as they are.
+std::string repeatable(const std::string& source) {
+  std::error_code error;
+  if (!std::filesystem::exists(source, error)) return source;
+  return std::filesystem::absolute(source).lexically_normal().string();
+}
+
+}  // namespace
+
+ingest::VerticalUnit vertical_unit_of(const std::string& word) {
+  const auto unit = ingest::parse_vertical_unit(word);
+  if (unit) return *unit;
+  throw ConfigError(fmt::format(
+      "--vertical-unit {}: is not known. Use metre, foot or us-survey-foot", word));
+}
+
+void read_settings(const std::filesystem::path& file, BuildSettings& settings) {
+  const std::string text = tiler::read_whole_file(file);
+  toml::table table;
+  try {
+    table = toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw ConfigError(fmt::format("{}:{}: {}", file.string(), error.source().begin.line,
+                                  error.description()));
+  }
+  for (const auto& [section, content] : table) {
+    const std::string name(section.str());
+    if (!content.is_table()) {
+      read_setting({file, name, content}, settings);
+      continue;
+    }
+    for (const auto& [key, node] : *content.as_table()) {
+      read_setting({file, name + "." + std::string(key.str()), node}, settings);
+    }
+  }
+}
+
+std::string to_toml(const BuildSettings& settings) {
+  std::string text = "# Written by terrane build. Repeat with: terrane build --config THIS -o OUT\n";
+  text += "[ingest]\ndem = [";
+  for (std::size_t i = 0; i < settings.dem.size(); ++i) {
+    text += (i > 0 ? ", " : "") + quoted(repeatable(settings.dem[i]));
+  }
+  text += "]\n";
+  const ingest::OpenOptions& ingest = settings.ingest;
+  if (ingest.band) text += fmt::format("band = {}\n", *ingest.band);
+  if (ingest.nodata) text += "nodata = " + quoted(*ingest.nodata) + "\n";
+  if (ingest.vertical_unit) {
+    text += "vertical_unit = " + quoted(std::string(name_of(*ingest.vertical_unit))) + "\n";
+  }
+  if (!ingest.crs.empty()) text += "crs = " + quoted(ingest.crs) + "\n";
+  text += fmt::format("\n[build]\ntolerance_m = {}\ntile_cells = {}\n", settings.build.tolerance_m,
+                      settings.build.tile_cells);
+  return text;
+}
+
+}  // namespace terrane::cli

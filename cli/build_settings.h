@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ingest/dem.h"
+#include "tiler/build.h"
+
+namespace terrane::cli {
+
+/// Everything that decides what `terrane build` writes.
+struct BuildSettings {
+  std::vector<std::string> dem;
+  ingest::OpenOptions ingest;
+  tiler::BuildOptions build;
+};
+
+/// Reads settings from TOML, over those that are given. Keys: see config/.
+/// \throws ConfigError that names file, line and key, for an unknown key, a value of the wrong type
+///         or out of range; InputError if the file cannot be read.
+void read_settings(const std::filesystem::path& file, BuildSettings& settings);
+
+/// The settings as TOML from which the same output can be built again: less `jobs`, which does not
+/// change it, and with full paths.
+std::string to_toml(const BuildSettings& settings);
+
+/// \throws ConfigError with the known words, if it is none of them.
+ingest::VerticalUnit vertical_unit_of(const std::string& word);
+
+}  // namespace terrane::cli

@@ -1,0 +1,106 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/build_settings.h"
+#include "cli/commands.h"
+#include "cli/terminal_progress.h"
+#include "core/errors.h"
+#include "ingest/scan.h"
+#include "tiler/whole_file.h"
+
+namespace terrane::cli {
+namespace {
+
+struct InfoCommand {
+  std::vector<std::string> what;
+  std::optional<int> band;
+  std::optional<std::string> nodata, vertical_unit;
+  std::string crs;
+};
+
+void print_row(std::string_view name, const std::string& value) {
+  fmt::print("{:<16}{}\n", name, value);
+}
+
+void describe_output(const std::filesystem::path& out) {
+  const auto json = nlohmann::json::parse(tiler::read_whole_file(out / "terrane.json"));
+  const auto& dem = json.at("dem");
+  print_row("output", out.string());
+  print_row("written by", json.at("generator").get<std::string>());
+  print_row("DEM", fmt::format("{} x {} samples, {} with data, {:.2f} to {:.2f} m",
+                               dem.at("columns").get<std::int64_t>(),
+                               dem.at("rows").get<std::int64_t>(),
+                               dem.at("samples_with_data").get<std::int64_t>(),
+                               dem.at("min_height_m").get<double>(),
+                               dem.at("max_height_m").get<double>()));
+  fmt::print("\n{:>5} {:>12} {:>12} {:>12} {:>7} {:>10} {:>9}\n", "level", "tolerance m",
+             "max error m", "rms error m", "tiles", "triangles", "MB");
+  for (const auto& level : json.at("levels")) {
+    fmt::print("{:>5} {:>12.3f} {:>12.3f} {:>12.3f} {:>7} {:>10} {:>9.2f}\n",
+               level.at("level").get<int>(), level.at("tolerance_m").get<double>(),
+               level.at("max_error_m").get<double>(), level.at("rms_error_m").get<double>(),
+               level.at("tiles").get<std::int64_t>(), level.at("triangles").get<std::int64_t>(),
+               level.at("bytes").get<double>() / 1e6);
+  }
+}
+
+void describe_dem(const InfoCommand& command, const CommonOptions& common) {
+  ingest::OpenOptions options{.band = command.band, .nodata = command.nodata, .crs = command.crs};
+  if (command.vertical_unit) options.vertical_unit = vertical_unit_of(*command.vertical_unit);
+  const auto progress = make_progress(common.quiet);
+  const auto dem = ingest::open_dem(command.what, options, *progress);
+  const HeightStatistics heights = ingest::scan_heights(*dem, *progress);
+  const ingest::DemDescription& about = dem->description();
+  const GridShape shape = dem->heights().shape();
+  const double samples = static_cast<double>(shape.columns) * static_cast<double>(shape.rows);
+
+  print_row("DEM", dem->name());
+  print_row("format", about.format);
+  print_row("samples", fmt::format("{} x {}", shape.columns, shape.rows));
+  print_row("spacing", fmt::format("{:.9g} x {:.9g} {}", about.column_spacing, about.row_spacing,
+                                   about.crs_unit));
+  print_row("CRS", about.crs_name.empty() ? "none: local metres" : about.crs_name);
+  if (!about.datum_shift.empty()) print_row("to WGS84", about.datum_shift);
+  print_row("band", fmt::format("{} of {}, {}", about.band, about.band_count, about.data_type));
+  print_row("heights in", fmt::format("{} (from {})", name_of(about.vertical_unit),
+                                      about.vertical_unit_origin));
+  print_row("no data", about.nodata_origin.empty()
+                           ? "not declared"
+                           : fmt::format("{} (from {})", fmt::join(about.nodata, ", "),
+                                         about.nodata_origin));
+  print_row("with data", fmt::format("{} samples, {:.2f} %", heights.samples_with_data,
+                                     100 * static_cast<double>(heights.samples_with_data) / samples));
+  print_row("heights", fmt::format("{:.2f} to {:.2f} m", heights.min_height_m,
+                                   heights.max_height_m));
+}
+
+void run(const InfoCommand& command, const CommonOptions& common) {
+  const std::filesystem::path first = command.what.front();
+  if (command.what.size() == 1 && std::filesystem::exists(first / "terrane.json")) {
+    describe_output(first);
+  } else {
+    describe_dem(command, common);
+  }
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, const CommonOptions& common) {
+  auto command = std::make_shared<InfoCommand>();
+  CLI::App* info = app.add_subcommand("info", "Describe a DEM, or what was built from one");
+  info->add_option("what", command->what, "DEM, several that make a mosaic, or an output folder")
+      ->required();
+  info->add_option("--band", command->band, "Band with the heights, from 1");
+  info->add_option("--nodata", command->nodata, "Stored value that means no data, or none");
+  info->add_option("--vertical-unit", command->vertical_unit, "metre, foot or us-survey-foot");
+  info->add_option("--crs", command->crs, "Coordinate reference system, like EPSG:4326");
+  info->callback([command, &common] { run(*command, common); });
+}
+
+}  // namespace terrane::cli

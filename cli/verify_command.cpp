@@ -1,0 +1,74 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/build_settings.h"
+#include "cli/commands.h"
+#include "cli/terminal_progress.h"
+#include "core/errors.h"
+#include "ingest/scan.h"
+#include "tiler/verify/verify.h"
+#include "tiler/whole_file.h"
+
+namespace terrane::cli {
+namespace {
+
+struct VerifyCommand {
+  std::filesystem::path out;
+  std::vector<std::string> dem;
+  std::filesystem::path json;
+  int jobs = 0;
+};
+
+void check_finished(const std::filesystem::path& out) {
+  if (std::filesystem::exists(out / "terrane.json")) return;
+  throw InputError(fmt::format(
+      "{}: is no finished output of terrane, as terrane.json is missing. Run terrane build first",
+      out.string()));
+}
+
+/// A tile set of another DEM would fail in a thousand places: say the one thing that is wrong.
+void check_same_dem(const std::filesystem::path& out, const ingest::Dem& dem, Progress& progress) {
+  const auto summary = nlohmann::json::parse(tiler::read_whole_file(out / "terrane.json"));
+  const auto built_from = summary.at("dem").at("fingerprint").get<std::string>();
+  if (ingest::scan_heights(dem, progress).fingerprint == built_from) return;
+  throw InputError(fmt::format(
+      "{}: was not built from {}, or that has changed since. Name the right DEM with --dem, or build "
+      "again",
+      out.string(), dem.name()));
+}
+
+void run(const VerifyCommand& command, const CommonOptions& common) {
+  check_finished(command.out);
+  BuildSettings settings;
+  read_settings(command.out / "build.toml", settings);
+  if (!command.dem.empty()) settings.dem = command.dem;
+  const auto progress = make_progress(common.quiet);
+  const auto dem = ingest::open_dem(settings.dem, settings.ingest, *progress);
+  check_same_dem(command.out, *dem, *progress);
+
+  const verify::VerifyReport report = verify::verify(command.out, dem->heights(), dem->place(),
+                                                     {.jobs = command.jobs}, *progress);
+  if (!command.json.empty()) tiler::write_whole_file(command.json, to_json(report));
+  fmt::print("{}", to_text(report));
+  if (!report.holds()) throw AnswerIsNo();
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app, const CommonOptions& common) {
+  auto command = std::make_shared<VerifyCommand>();
+  CLI::App* verify = app.add_subcommand(
+      "verify", "Check tiles against their DEM: error bound, folds, seams, blends, boxes");
+  verify->add_option("out", command->out, "Folder that terrane build wrote")->required();
+  verify->add_option("--dem", command->dem, "DEM to check against [the one it was built from]");
+  verify->add_option("--json", command->json, "File to write the whole report to");
+  verify->add_option("--jobs", command->jobs, "Threads; 0: one per core")->capture_default_str();
+  verify->callback([command, &common] { run(*command, common); });
+}
+
+}  // namespace terrane::cli
