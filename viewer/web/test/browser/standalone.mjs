@@ -16,7 +16,7 @@ await writeTileset(folder);
 const server = await serveFolders([folder, process.env.TERRANE_WEB_DIST ?? here('../../dist')]);
 const view = spawn(
   process.execPath,
-  [here('view.mjs'), '--url', server.url, ...process.argv.slice(2)],
+  [here('view.mjs'), '--url', server.url, '--covered=-1500,-1200', ...process.argv.slice(2)],
   {stdio: 'inherit'},
 );
 const status = await new Promise((resolve) => view.on('exit', resolve));

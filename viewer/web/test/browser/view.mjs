@@ -2,6 +2,7 @@
 //
 //     node view.mjs --url http://127.0.0.1:8080/ --screenshot view.png
 //         [--tolerance 4] [--steps 20] [--chromium /usr/bin/chromium] [--closeup close.png]
+//         [--covered x,y]   a place, in world metres, without holes in the data around it
 //
 // One line for each check; exit status 0 if all hold.
 import {mkdtemp, rm, writeFile} from 'node:fs/promises';
@@ -17,6 +18,7 @@ const {values: options} = parseArgs({
     closeup: {type: 'string'},
     tolerance: {type: 'string', default: '4'},
     steps: {type: 'string', default: '20'},
+    covered: {type: 'string'},
     chromium: {type: 'string', default: '/usr/bin/chromium'},
   },
 });
@@ -106,7 +108,8 @@ function readPicture(page) {
 /** Cameras from the first one's distance down to a few steps over the ground, turning on the way. */
 async function cameraPath(page, steps) {
   const {min, max} = await page.evaluate(() => window.terrane.bounds());
-  const [x, y] = [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2];
+  // not the middle itself, where four tiles meet
+  const [x, y] = [0, 1].map((k) => 0.6 * min[k] + 0.4 * max[k]);
   const z = await page.evaluate(([px, py]) => window.terrane.groundZ(px, py), [x, y]);
   const target = [x, y, z ?? (min[2] + max[2]) / 2];
   const far = 1.4 * Math.hypot(max[0] - min[0], max[1] - min[1]);
@@ -149,6 +152,20 @@ async function walk(page) {
   }
 }
 
+/** Looks down on a place from several heights: a pixel that shows the sky is a crack. */
+async function lookDown(page, [x, y]) {
+  const z = await page.evaluate(([px, py]) => window.terrane.groundZ(px, py), [x, y]);
+  for (const distance of [2000, 1400, 1000, 700, 400]) {
+    const eye = [x + 0.2 * distance, y - 0.5 * distance, z + distance];
+    await page.evaluate((c) => window.terrane.setCamera(c), {eye, target: [x, y, z]});
+    await ready(page);
+    const {drawn} = await readPicture(page);
+    const {levels} = await page.evaluate(() => window.terrane.stats());
+    const text = Object.entries(levels).map(([level, tiles]) => `${level}:${tiles}`);
+    check(drawn === 1, `from ${distance} m above, tiles ${text.join(' ')}: no sky between them`);
+  }
+}
+
 async function look(context) {
   const {page, problems} = await open(context);
   await ready(page);
@@ -159,6 +176,7 @@ async function look(context) {
   check(stats.triangles > 0, `${stats.triangles} triangles in ${stats.tiles} tiles`);
   if (options.screenshot) await writeFile(options.screenshot, await page.screenshot());
   await walk(page);
+  if (options.covered) await lookDown(page, options.covered.split(',').map(Number));
   if (options.closeup) await writeFile(options.closeup, await page.screenshot());
   const {failed} = await page.evaluate(() => window.terrane.stats());
   check(failed === 0, `${failed} tiles failed`);
