@@ -13,7 +13,7 @@ namespace {
 // Larger JSON would take a second to compress, and all of it in memory.
 constexpr std::uint64_t kLargestGzipBytes = 64 << 20;
 
-FileAnswer text_answer(int status, std::string text) {
+FileAnswer text_answer(int status, const std::string& text) {
   FileAnswer answer{.status = status, .headers = {}, .body = text + "\n"};
   answer.headers = {{"Content-Type", "text/plain; charset=utf-8"},
                     {"Content-Length", std::to_string(text.size() + 1)},
