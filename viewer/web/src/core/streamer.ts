@@ -34,8 +34,10 @@ export interface Frame {
   readonly ranges: Ranges;
   /** 0: the root alone; 1: all detail that is wanted. */
   readonly share: number;
-  /** True when nothing is missing and nothing glides. */
+  /** True when all detail that is wanted is in the cut. */
   readonly settled: boolean;
+  /** True when the next frame will show more even if nothing arrives. */
+  readonly gliding: boolean;
   /** Tiles that the wanted cut needs, and how many of them are here. */
   readonly wanted: number;
   readonly loaded: number;
@@ -101,8 +103,8 @@ export class Streamer<C extends Content> {
     const ranges = reducedRanges(levels, wanted, this.share);
     const cut = isReady(root) ? cutOf(selectTiles(root, view.eye, ranges)) : [];
     const loaded = visits.filter((visit) => isReady(visit.tile)).length;
-    const settled = this.share === 1;
-    return {cut, ranges, share: this.share, settled, wanted: visits.length, loaded};
+    const progress = {settled: this.share === 1, gliding: this.share < ready};
+    return {cut, ranges, share: this.share, ...progress, wanted: visits.length, loaded};
   }
 
   private request(visits: readonly Visit[], view: View, nowS: number): void {

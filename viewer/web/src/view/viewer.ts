@@ -40,7 +40,7 @@ export class Viewer {
   private drawn: Drawn = {tiles: 0, triangles: 0, levels: {}};
   private scheduled = 0;
   private retryTimer = 0;
-  private isStale = true;
+  private isMoving = true;
   private waiting: (() => void)[] = [];
 
   constructor(
@@ -98,13 +98,13 @@ export class Viewer {
 
   /** Draws now; the canvas can be read until the current task ends. */
   redraw(): Frame {
-    const isMoving = this.navigation.step(this.lowestEyeZ());
+    const isTurning = this.navigation.step(this.lowestEyeZ());
     const ground = this.groundBelow() ?? this.tileset.root.box.center[2];
     this.view.aim(this.navigation.camera, Math.abs(this.navigation.eye[2] - ground));
     const frame = this.update();
     this.frame = frame;
     this.drawn = this.view.draw(frame, (tile) => this.contentOf(tile));
-    this.isStale = isMoving || !frame.settled;
+    this.isMoving = isTurning || frame.gliding;
     return frame;
   }
 
@@ -132,12 +132,12 @@ export class Viewer {
     this.showFigures(frame);
     this.showFailures();
     this.retryLater();
-    if (this.isStale) this.invalidate();
+    if (this.isMoving) this.invalidate();
     if (frame.settled) for (const resolve of this.waiting.splice(0)) resolve();
   }
 
   private showFigures(frame: Frame): void {
-    const framesPerS = this.isStale ? this.rate.framesPerS : undefined;
+    const framesPerS = this.isMoving ? this.rate.framesPerS : undefined;
     const loadedShare = frame.loaded / frame.wanted;
     this.panel.show({...this.stats(), framesPerS, loadedShare});
   }

@@ -5,11 +5,9 @@
 //         [--covered x,y]   a place, in world metres, without holes in the data around it
 //
 // One line for each check; exit status 0 if all hold.
-import {mkdtemp, rm, writeFile} from 'node:fs/promises';
-import {tmpdir} from 'node:os';
-import {join} from 'node:path';
+import {writeFile} from 'node:fs/promises';
 import {parseArgs} from 'node:util';
-import {chromium} from 'playwright-core';
+import {check, failures, open, ready, withBrowser} from './browser.mjs';
 
 const {values: options} = parseArgs({
   options: {
@@ -25,66 +23,6 @@ const {values: options} = parseArgs({
 
 /** What software rendering manages in a few seconds. */
 const kMostTriangles = 50000;
-const kPicture = {width: 640, height: 480};
-const kReadyMs = 120000;
-
-// software rendering, and no traffic of the browser's own
-const kFlags = [
-  '--no-sandbox',
-  '--disable-quic',
-  '--no-first-run',
-  '--disable-background-networking',
-  '--disable-component-update',
-  '--disable-sync',
-  '--use-gl=angle',
-  '--use-angle=swiftshader',
-  '--enable-unsafe-swiftshader',
-];
-
-let failures = 0;
-
-function check(holds, text) {
-  console.log(`${holds ? 'ok  ' : 'FAIL'} ${text}`);
-  if (!holds) ++failures;
-}
-
-/** Opens the page; collects console errors and requests that fail. */
-async function open(context) {
-  const problems = {console: [], requests: []};
-  const page = await context.newPage();
-  await page.route('**', (route) => {
-    const {hostname, protocol} = new URL(route.request().url());
-    const isLocal = hostname === '127.0.0.1' || hostname === 'localhost' || protocol === 'data:';
-    return isLocal ? route.continue() : route.abort();
-  });
-  page.on('console', (message) => {
-    if (message.type() === 'error') problems.console.push(message.text());
-  });
-  page.on('pageerror', (error) => problems.console.push(error.message));
-  page.on('response', (response) => {
-    if (response.status() >= 400) problems.requests.push(`${response.status()} ${response.url()}`);
-  });
-  page.on('requestfailed', (request) => {
-    // the viewer lets go of tiles that it no longer wants
-    const reason = request.failure()?.errorText ?? '';
-    if (reason !== 'net::ERR_ABORTED') problems.requests.push(`${reason} ${request.url()}`);
-  });
-  const url = new URL(options.url);
-  url.searchParams.set('antialias', 'off');
-  url.searchParams.set('tolerance', options.tolerance);
-  await page.goto(url.href);
-  await page.waitForFunction(() => window.terrane, undefined, {timeout: kReadyMs});
-  return {page, problems};
-}
-
-/** Resolves when all wanted detail is shown; rejects after two minutes. */
-async function ready(page) {
-  const late = new Promise((_, reject) => {
-    const timer = setTimeout(() => reject(new Error('not ready after two minutes')), kReadyMs);
-    timer.unref();
-  });
-  await Promise.race([page.evaluate(() => window.terrane.ready()), late]);
-}
 
 /** Drawn pixels of the canvas (the sky behind it is clear) and their different colours. */
 function readPicture(page) {
@@ -167,7 +105,7 @@ async function lookDown(page, [x, y]) {
 }
 
 async function look(context) {
-  const {page, problems} = await open(context);
+  const {page, problems} = await open(context, options.url, options.tolerance);
   await ready(page);
   const picture = await readPicture(page);
   check(picture.drawn > 0.1, `terrain covers ${(100 * picture.drawn).toFixed(0)} % of the picture`);
@@ -186,21 +124,9 @@ async function look(context) {
 
 async function main() {
   if (!options.url) throw new Error('Say --url, the address of the page to look at');
-  const profile = await mkdtemp(join(tmpdir(), 'terrane-view-'));
-  const context = await chromium.launchPersistentContext(profile, {
-    executablePath: options.chromium,
-    headless: true,
-    args: kFlags,
-    viewport: kPicture,
-  });
-  try {
-    await look(context);
-  } finally {
-    await context.close();
-    await rm(profile, {recursive: true, force: true});
-  }
+  await withBrowser(options.chromium, look);
 }
 
 main()
   .catch((error) => check(false, error.message))
-  .finally(() => process.exit(failures > 0 ? 1 : 0));
+  .finally(() => process.exit(failures() > 0 ? 1 : 0));

@@ -95,6 +95,8 @@ describe('Streamer', () => {
       if (frame.cut.length > 0) expect(isWhole(frame.cut)).toBe(true);
       expect(frame.cut.some(({key}) => key === '0/1/1')).toBe(false);
     }
+    // it rests: nothing to draw until the next try
+    expect(world.streamer.update(view, 5).gliding).toBe(false);
     expect([...world.streamer.failures.values()][0]!.message).toBe('0/1/1: status 404');
 
     world.broken.clear();

@@ -1,0 +1,96 @@
+// Headless Chromium with a viewer in it, and a count of checks that do not hold.
+import {mkdtemp, rm} from 'node:fs/promises';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {chromium} from 'playwright-core';
+
+const kPicture = {width: 640, height: 480};
+const kReadyMs = 120000;
+
+// software rendering, and no traffic of the browser's own
+const kFlags = [
+  '--no-sandbox',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+  '--use-gl=angle',
+  '--use-angle=swiftshader',
+  '--enable-unsafe-swiftshader',
+];
+
+let failureCount = 0;
+
+/** Prints one line for a check. */
+export function check(holds, text) {
+  console.log(`${holds ? 'ok  ' : 'FAIL'} ${text}`);
+  if (!holds) ++failureCount;
+}
+
+/** Checks so far that do not hold. */
+export function failures() {
+  return failureCount;
+}
+
+/**
+ * Opens a viewer and waits for its tileset.
+ *
+ * @returns the page, and what goes wrong in it: console errors, and requests that fail
+ */
+export async function open(context, address, tolerance) {
+  const problems = {console: [], requests: []};
+  const page = await context.newPage();
+  await page.route('**', keepLocal);
+  listen(page, problems);
+  const url = new URL(address);
+  url.searchParams.set('antialias', 'off');
+  url.searchParams.set('tolerance', tolerance);
+  await page.goto(url.href);
+  await page.waitForFunction(() => window.terrane, undefined, {timeout: kReadyMs});
+  return {page, problems};
+}
+
+function keepLocal(route) {
+  const {hostname, protocol} = new URL(route.request().url());
+  const isLocal = hostname === '127.0.0.1' || hostname === 'localhost' || protocol === 'data:';
+  return isLocal ? route.continue() : route.abort();
+}
+
+function listen(page, problems) {
+  page.on('console', (message) => {
+    if (message.type() === 'error') problems.console.push(message.text());
+  });
+  page.on('pageerror', (error) => problems.console.push(error.message));
+  page.on('response', (response) => {
+    if (response.status() >= 400) problems.requests.push(`${response.status()} ${response.url()}`);
+  });
+  page.on('requestfailed', (request) => {
+    // the viewer lets go of tiles that it no longer wants
+    const reason = request.failure()?.errorText ?? '';
+    if (reason !== 'net::ERR_ABORTED') problems.requests.push(`${reason} ${request.url()}`);
+  });
+}
+
+/** Resolves when all wanted detail is shown; rejects after two minutes. */
+export async function ready(page) {
+  let timer;
+  const late = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(new Error('not ready after two minutes')), kReadyMs);
+  });
+  await Promise.race([page.evaluate(() => window.terrane.ready()), late]);
+  clearTimeout(timer);
+}
+
+/** Runs something in a fresh browser. */
+export async function withBrowser(executablePath, use) {
+  const profile = await mkdtemp(join(tmpdir(), 'terrane-view-'));
+  const settings = {executablePath, headless: true, args: kFlags, viewport: kPicture};
+  const context = await chromium.launchPersistentContext(profile, settings);
+  try {
+    await use(context);
+  } finally {
+    await context.close();
+    await rm(profile, {recursive: true, force: true});
+  }
+}
