@@ -16,8 +16,9 @@ namespace {
 
 constexpr double kLargestFloat = std::numeric_limits<float>::max();
 
-// programs write their lowest float with different digits, so all of them are one value here
-constexpr double kLowestFloatHabit = -3.4e38;
+// programs write their lowest float with different digits, -3.4e38 and 3.4028235e+38 among them, so
+// all of them are one value here
+constexpr double kLowestFloatHabit = -3.39e38;
 
 bool is_same_nodata(double stored, double nodata) {
   return stored == nodata || (nodata <= kLowestFloatHabit && stored <= kLowestFloatHabit);

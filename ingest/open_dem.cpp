@@ -44,6 +44,17 @@ std::unique_ptr<Dem> open_rasters(const std::vector<std::string>& sources,
                                std::move(heights), std::move(place));
 }
 
+void refuse_options_of_files(const std::string& source, const OpenOptions& options) {
+  const char* option = options.band            ? "--band"
+                       : options.nodata        ? "--nodata"
+                       : options.vertical_unit ? "--vertical-unit"
+                       : !options.crs.empty()  ? "--crs"
+                                               : nullptr;
+  if (option == nullptr) return;
+  throw InputError(fmt::format("{}: {} describes files, and this DEM is computed. Leave it away",
+                               source, option));
+}
+
 }  // namespace
 
 Dem::Dem(std::string name, DemDescription description, std::vector<SuspectHeight> suspects,
@@ -59,8 +70,11 @@ std::unique_ptr<Dem> open_dem(const std::vector<std::string>& sources, const Ope
   if (sources.empty()) throw InputError("no DEM is given. Name at least one raster file");
   for (const std::string& source : sources) {
     if (!is_synthetic(source)) continue;
-    if (sources.size() == 1) return open_synthetic_dem(source);
-    throw InputError(fmt::format("{}: is synthetic and makes no mosaic. Give it alone", source));
+    if (sources.size() > 1) {
+      throw InputError(fmt::format("{}: is synthetic and makes no mosaic. Give it alone", source));
+    }
+    refuse_options_of_files(source, options);
+    return open_synthetic_dem(source);
   }
   return open_rasters(sources, options, progress);
 }

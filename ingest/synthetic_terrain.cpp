@@ -49,7 +49,7 @@ double fractal_hills_m(double x, double y, std::uint64_t seed) {
 // steep to the lake, gentle to the outside, and a floor below the lake's level
 double ring_m(double radius) {
   if (radius >= kRimRadius) return 900 * bump((radius - kRimRadius) / 0.45);
-  return 1500 * bump((kRimRadius - radius) / 0.22) - 600;
+  return 1100 * bump((kRimRadius - radius) / 0.22) - 200;
 }
 
 double island_m(double x, double y) {
