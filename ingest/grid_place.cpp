@@ -3,6 +3,7 @@
 #include <cpl_conv.h>
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -98,6 +99,7 @@ PlanPosition GridPlace::to_plan(GridPosition position) const {
 }
 
 std::vector<LonLat> GridPlace::to_lon_lat(std::span<const GridPosition> positions) const {
+  assert(datum_shift_ != nullptr);
   std::vector<PlanPosition> plan;
   plan.reserve(positions.size());
   for (const GridPosition& position : positions) plan.push_back(to_plan(position));

@@ -1,11 +1,11 @@
 #include "ingest/height_conversion.h"
 
+#include <cpl_conv.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
 #include "core/errors.h"
@@ -26,7 +26,8 @@ bool is_same_nodata(double stored, double nodata) {
 
 double parse_number(const std::string& text, const std::string& file) {
   char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
+  // not std::strtod, which takes a decimal comma in some locales
+  const double value = CPLStrtod(text.c_str(), &end);
   if (text.empty() || *end != '\0') {
     throw ConfigError(
         fmt::format("{}: '{}' is no value for --nodata. Give a number, several with "

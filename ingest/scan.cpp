@@ -15,25 +15,28 @@
 namespace terrane::ingest {
 namespace {
 
-// 4 MB as float, 8 MB more while GDAL fills it
+// 4 MB as float, 8 MB more while they are converted
 constexpr std::int64_t kSamplesAtOnce = std::int64_t{1} << 20;
-constexpr std::int64_t kRowsAtOnce = 256;
 
 struct ChunkSize {
   std::int64_t columns;
   std::int64_t rows;
 };
 
-// whole blocks where they are small enough, so that GDAL decodes each once
+// as many whole blocks as fit, along the row first: GDAL then decodes each block once
 ChunkSize chunk_size(const Dem& dem) {
   const DemDescription& about = dem.description();
   const GridShape shape = dem.heights().shape();
-  const std::int64_t rows = about.block_rows >= kRowsAtOnce
-                                ? std::min<std::int64_t>(about.block_rows, 4 * kRowsAtOnce)
-                                : kRowsAtOnce / about.block_rows * about.block_rows;
-  const std::int64_t columns = std::max<std::int64_t>(
-      kSamplesAtOnce / rows / about.block_columns * about.block_columns, kSamplesAtOnce / rows);
-  return {std::min(columns, shape.columns), std::min(rows, shape.rows)};
+  const auto times_that_fit = [](std::int64_t samples) {
+    return std::max<std::int64_t>(kSamplesAtOnce / samples, 1);
+  };
+  ChunkSize chunk{about.block_columns, about.block_rows};
+  chunk.columns *= times_that_fit(chunk.columns * chunk.rows);
+  chunk.columns = std::min(chunk.columns, shape.columns);
+  chunk.rows *= times_that_fit(chunk.columns * chunk.rows);
+  // formats that store the whole grid as one block
+  chunk.rows = std::min(chunk.rows, times_that_fit(chunk.columns));
+  return {chunk.columns, std::min(chunk.rows, shape.rows)};
 }
 
 bool is_suspect(float height_m, const SuspectHeight& suspect) {

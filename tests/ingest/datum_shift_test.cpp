@@ -131,7 +131,8 @@ TEST(DatumShift, MovesNeighboursAlikeAcrossAContinent) {
                                                     kMetresPerDegree);
     }
   }
-  // a shift of 240 m that turns with the Earth changes by about 240 m * 0.25 degree, 1 m, in a step
+  // a shift of 240 m that turns with the Earth changes by about 240 m * 0.25 degree, 1 m, in a
+  // step; GDAL 3.6's own transformation steps by 23 m here
   EXPECT_LT(largest_step_m, 2.5);
 }
 

@@ -153,6 +153,25 @@ TEST(GridPlace, CountsLongitudesBeyond180BackFromTheDateLine) {
   EXPECT_EQ(lon_lat(*dem, {39, 0}).longitude_deg, -170.25);
 }
 
+TEST(GridPlace, HoldsTheWholeEarthCountedFrom0To360) {
+  const RasterFolder folder;
+  // sample centres from 0 E to 359 E and from pole to pole
+  const auto dem = open_quietly(folder.write(
+      "earth.tif",
+      {.columns = 360, .rows = 181, .geotransform = north_up(-0.5, 90.5, 1), .crs = "EPSG:4326"}));
+  EXPECT_EQ(lon_lat(*dem, {0, 0}).latitude_deg, 90);
+  EXPECT_EQ(lon_lat(*dem, {200, 180}).latitude_deg, -90);
+  EXPECT_EQ(lon_lat(*dem, {200, 90}).longitude_deg, -160);
+}
+
+TEST(GridPlace, DropsTheHeightOfAThreeDimensionalCrs) {
+  const RasterFolder folder;
+  const std::string file = folder.write("a.tif", {.geotransform = north_up(-123, 43, 0.5)});
+  const auto dem = open_quietly(file, {.crs = "EPSG:4979"});
+  EXPECT_EQ(lon_lat(*dem, {1, 0}).longitude_deg, -122.25);
+  EXPECT_THAT(dem->place().crs_wkt(), ::testing::Not(HasSubstr("ellipsoidal height")));
+}
+
 TEST(GridPlace, RefusesMetresAsDegrees) {
   const RasterFolder folder;
   const std::string file = folder.write("a.tif", {.geotransform = north_up(500000, 4000000, 10)});

@@ -155,11 +155,11 @@ TEST(FingerprintOfADem, IsThatOfTheHeightsAndNotOfTheFormat) {
 
 TEST(FingerprintOfADem, DoesNotDependOnTheWidthOfTheChunks) {
   const RasterFolder folder;
-  // 6,000 columns in blocks of 16: chunks of 4,096 columns; in strips: of whole rows
+  // blocks of 512 x 512 are read in pieces of 2,048 columns, strips in whole rows
   SmallRaster strips = {
       .columns = 6000, .rows = 300, .value = [](int c, int r) { return std::sqrt(c) + r; }};
   SmallRaster tiles = strips;
-  tiles.creation_options = {"TILED=YES", "BLOCKXSIZE=16", "BLOCKYSIZE=16"};
+  tiles.creation_options = {"TILED=YES", "BLOCKXSIZE=512", "BLOCKYSIZE=512"};
   EXPECT_EQ(scan(folder.write("a.tif", strips)).fingerprint,
             scan(folder.write("b.tif", tiles)).fingerprint);
 }
