@@ -48,7 +48,7 @@ struct LevelReport {
   std::array<MorphReport, 3> morph = {MorphReport{.t = 0.25}, MorphReport{.t = 0.5},
                                       MorphReport{.t = 0.75}};
 
-  /// Tiles whose box lacks some of their vertices (t = 0 or 1) or of a child's box.
+  /// Tiles whose box lacks some of their vertices (t = 0 or 1), and children that stick out of it.
   std::int64_t boxes_violated = 0;
   std::int64_t nested_errors_violated = 0;  ///< tiles that state a smaller error than a child's
   std::int64_t stated_error_too_small = 0;  ///< tiles that state less than was measured
