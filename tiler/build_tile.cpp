@@ -109,6 +109,7 @@ class TileBuild {
  private:
   void fill_field() {
     field_ = {window_.columns, window_.rows, {}};
+    field_.slack_cells = source_.lattice.step_m(tile_.level).x() / frame_.spacing_m();
     field_.heights_m.reserve(static_cast<std::size_t>(window_.columns * window_.rows));
     for (std::int64_t row = 0; row < window_.rows; ++row) {
       for (std::int64_t column = 0; column < window_.columns; ++column) {

@@ -17,6 +17,8 @@ FieldPoint field_point(const Place& place) {
   return {hierarchy::column_of(place.plan), hierarchy::row_of(place.plan), 0};
 }
 
+constexpr double kOnEdge_cells = 1e-7;
+
 class Measurement {
  public:
   Measurement(const TileFrame& frame, const Lattice& lattice, int level, const HeightGrid& grid,
@@ -32,7 +34,7 @@ class Measurement {
   void add_triangle(const Place& a, const Place& b, const Place& c) {
     const Eigen::Vector3d corner = world(a);
     const Eigen::Vector3d normal = (world(b) - corner).cross(world(c) - corner);
-    for_each_span(field_point(a), field_point(b), field_point(c), extent_,
+    for_each_span(field_point(a), field_point(b), field_point(c), extent_, kOnEdge_cells,
                   [&](std::int64_t row, std::int64_t first, std::int64_t last) {
                     for (std::int64_t column = first; column <= last; ++column) {
                       const Plumb plumb = plumb_at(column, row);
@@ -68,6 +70,9 @@ class Measurement {
       result.sum_of_squares_m2 += error_m * error_m;
       ++result.samples;
     }
+    // heights are taken at the frame's places, which are off by a little: on slopes of up to 3 the
+    // heights then are by four times that at most
+    result.max_m += 4 * frame_.accuracy_m();
     return result;
   }
 

@@ -18,6 +18,7 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
 /// A sample that rounding left outside by less than a lattice step is measured against the nearest
 /// point of the rim.
 ///
+/// max_m is an upper bound: what the frame may be off is added.
 /// \param rim     edges with a triangle on one side only.
 /// \param places  where the vertices stand over the grid of the tile.
 /// \param points  the same as they are written, on the lattice of \p level.

@@ -42,8 +42,8 @@ TileFrame::TileFrame(const WorldFrame& world, const Lattice& lattice, const Wind
       level_(level),
       half_columns_(static_cast<double>(window.columns - 1) / 2),
       half_rows_(static_cast<double>(window.rows - 1) / 2) {
-  const double accuracy_m = lattice.step_m(level).minCoeff() / 16;
-  for (int degree = 1; !fit(world, window, degree, accuracy_m); ++degree) {
+  const double wanted_accuracy_m = lattice.step_m(level).minCoeff() / 256;
+  for (int degree = 1; !fit(world, window, degree, wanted_accuracy_m); ++degree) {
     if (degree < kHighestDegree) continue;
     throw InputError(fmt::format(
         "columns {} to {}, rows {} to {}: the DEM's projection bends too much to be followed. "
@@ -54,8 +54,9 @@ TileFrame::TileFrame(const WorldFrame& world, const Lattice& lattice, const Wind
   derive(window);
 }
 
-/// \return whether the polynomials of this degree meet the world within accuracy_m.
-bool TileFrame::fit(const WorldFrame& world, const Window& window, int degree, double accuracy_m) {
+/// \return whether the polynomials of this degree are as exact as wanted.
+bool TileFrame::fit(const WorldFrame& world, const Window& window, int degree,
+                    double wanted_accuracy_m) {
   degree_ = degree;
   const int n = degree + 1;
   const auto position = [&](double s, double t) {
@@ -92,13 +93,15 @@ bool TileFrame::fit(const WorldFrame& world, const Window& window, int degree, d
   }
   const std::vector<Plumb> exact = world.plumbs(probes);
   constexpr double kHighest_m = 9000;
+  double worst_m = 0;
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const Plumb guess = plumb(probes[i].column - static_cast<double>(window.column),
                               probes[i].row - static_cast<double>(window.row));
-    if ((guess.base - exact[i].base).norm() > accuracy_m) return false;
-    if ((guess.up - exact[i].up).norm() * kHighest_m > accuracy_m) return false;
+    worst_m = std::max({worst_m, (guess.base - exact[i].base).norm(),
+                        (guess.up - exact[i].up).norm() * kHighest_m});
   }
-  return true;
+  accuracy_m_ = 2 * worst_m;
+  return accuracy_m_ <= wanted_accuracy_m;
 }
 
 void TileFrame::derive(const Window& window) {

@@ -36,6 +36,8 @@ class TileFrame final : public hierarchy::Placer {
   hierarchy::Place place(hierarchy::GridPoint plan, double height_m) const override;
   bool is_straight(const hierarchy::Place& a, const hierarchy::Place& b) const override;
 
+  /// Largest distance to the exact map that was found, doubled.
+  double accuracy_m() const { return accuracy_m_; }
   /// Does the grid run clockwise in the world (a south-up DEM)?
   bool is_mirrored() const { return is_mirrored_; }
   /// Smaller distance between neighbouring samples along a row or a column, in metres.
@@ -44,7 +46,7 @@ class TileFrame final : public hierarchy::Placer {
  private:
   static constexpr int kHighestDegree = 9;
 
-  bool fit(const WorldFrame& world, const Window& window, int degree, double accuracy_m);
+  bool fit(const WorldFrame& world, const Window& window, int degree, double wanted_accuracy_m);
   void derive(const Window& window);
   hierarchy::Place solve(const Eigen::Vector3d& at) const;
 
@@ -56,6 +58,7 @@ class TileFrame final : public hierarchy::Placer {
   Eigen::Matrix<double, 6, Eigen::Dynamic> coefficients_;
   Eigen::Matrix3d grid_per_world_;  // (column, row, height) per metre at the middle
   Eigen::Vector3d curvature_;       // of the drop: column^2, column row, row^2
+  double accuracy_m_ = 0;
   bool is_mirrored_ = false;
   double spacing_m_ = 0;
 };

@@ -3,6 +3,9 @@
 namespace terrane::hierarchy {
 namespace {
 
+// the fit leaves samples outside alone, where weights are negative: is_within() has the last word
+constexpr double kOnEdge_cells = 1e-7;
+
 /// value(column, row) of a function that is linear over a triangle.
 struct Plane {
   double origin_column, origin_row, value, per_column, per_row;
@@ -52,7 +55,7 @@ bool add_triangle(const FieldPoint& centre, const StarSide& side, const SampleFi
                                      {side.to.column, side.to.row, 0});
   const Plane rest = plane_through({centre.column, centre.row, 0}, side.from, side.to);
   return for_each_span(
-      centre, side.from, side.to, field,
+      centre, side.from, side.to, field, kOnEdge_cells,
       [&](std::int64_t row, std::int64_t first, std::int64_t last) {
         const double* heights = field.row(row);
         for (std::int64_t column = first; column <= last; ++column) {
@@ -87,7 +90,7 @@ std::optional<StarHeight> fit_star(double column, double row, std::span<const St
 bool is_within(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
                const SampleField& field, double tolerance_m) {
   const Plane plane = plane_through(a, b, c);
-  return for_each_span(a, b, c, field,
+  return for_each_span(a, b, c, field, field.slack_cells,
                        [&](std::int64_t row, std::int64_t first, std::int64_t last) {
                          const double* heights = field.row(row);
                          for (std::int64_t column = first; column <= last; ++column) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "hierarchy/collapse/boundary_rule.h"
 #include "hierarchy/collapse/morph_guard.h"
@@ -13,22 +12,6 @@ namespace {
 
 FieldPoint field_point(const Place& place) {
   return {column_of(place.plan), row_of(place.plan), place.height_m};
-}
-
-/// \pre both places are those of samples, rounded.
-bool is_rim_edge_within(const Place& a, const Place& b, const SampleField& field,
-                        double tolerance_m) {
-  const std::int64_t column = std::llround(column_of(a.plan)), row = std::llround(row_of(a.plan));
-  const std::int64_t columns = std::llround(column_of(b.plan)) - column;
-  const std::int64_t rows = std::llround(row_of(b.plan)) - row;
-  const std::int64_t steps = std::gcd(columns, rows);
-  for (std::int64_t i = 1; i < steps; ++i) {
-    const double t = static_cast<double>(i) / static_cast<double>(steps);
-    const double on_edge_m = a.height_m + t * (b.height_m - a.height_m);
-    const double sample_m = field.row(row + i * rows / steps)[column + i * columns / steps];
-    if (std::abs(on_edge_m - sample_m) > tolerance_m) return false;
-  }
-  return true;
 }
 
 /// A place worth trying for the new vertex.
@@ -138,31 +121,11 @@ class StrictCollapse {
     list_candidates(boundary);
     list_sides();
 
-    if (boundary.type == BoundaryType::kEdge && !rim_holds(*boundary.onto)) {
-      return Collapsibility::kOverTolerance;
-    }
     const auto best = best_place();
     if (!best) return refusal_;
     if (guard_ && !guard_->allows(stencil_.core_span(), *best)) return Collapsibility::kMorph;
     commit(*best, boundary.onto.value_or(stencil_.core[0]));
     return Collapsibility::kYes;
-  }
-
-  /// Is the outline that a collapse onto a vertex leaves within the tolerance of the samples on it?
-  ///
-  /// The star alone cannot tell: by rounding, such a sample may lie just outside every triangle.
-  bool rim_holds(VertexId onto) const {
-    const auto& polygon = stencil_.polygon;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const VertexId a = polygon[i], b = polygon[(i + 1) % polygon.size()];
-      if (mesh_.is_ghost(a) == mesh_.is_ghost(b)) continue;
-      const VertexId neighbour = mesh_.is_ghost(a) ? b : a;
-      if (!is_rim_edge_within(vertices_[index(onto)].place, vertices_[index(neighbour)].place,
-                              field_, options_.tolerance_m)) {
-        return false;
-      }
-    }
-    return true;
   }
 
   void list_candidates(const BoundaryVerdict& boundary) {

@@ -1,0 +1,74 @@
+#include "hierarchy/collapse/morph_guard.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/hierarchy/test_meshes.h"
+
+namespace terrane::hierarchy {
+namespace {
+
+using testing::ExactPlacer;
+using testing::field_of;
+using testing::grid_of;
+using testing::terrain_of;
+
+Place cell(double column, double row, double height_m) {
+  return ExactPlacer().place({static_cast<std::int32_t>(column * kUnitsPerCell),
+                              static_cast<std::int32_t>(-row * kUnitsPerCell)},
+                             height_m);
+}
+
+/// 5 x 5 flat samples; vertex 12 is the middle one.
+class FlatGuard : public ::testing::Test {
+ protected:
+  FlatGuard() : grid_(grid_of(5, 5, [](auto, auto) { return 0; })), mesh_(terrain_of(grid_)) {
+    for (const TerrainVertex& vertex : mesh_.vertices) finer_.push_back(vertex.place);
+  }
+
+  MorphGuard guard(std::int64_t reach = INT64_MAX) const {
+    return MorphGuard(finer_, mesh_.triangles, mesh_.vertices, field_, 1, reach);
+  }
+
+  HeightGrid grid_;
+  TerrainMesh mesh_;
+  SampleField field_ = field_of(grid_);
+  std::vector<Place> finer_;
+};
+
+TEST_F(FlatGuard, AllowsAVertexToMoveInsideItsStar) {
+  EXPECT_TRUE(guard().allows(std::array{VertexId{12}}, cell(2.3, 2.1, 0.5)));
+}
+
+TEST_F(FlatGuard, RefusesToTurnATriangleOver) {
+  EXPECT_FALSE(guard().allows(std::array{VertexId{12}}, cell(4, 1, 0)));
+}
+
+TEST_F(FlatGuard, RefusesToLeaveTheToleranceHalfWay) {
+  // 1.9 m up: within 1 m at t = 1/2 only just, and over it at 3/4
+  EXPECT_FALSE(guard().allows(std::array{VertexId{12}}, cell(2, 2, 1.9)));
+  EXPECT_TRUE(guard().allows(std::array{VertexId{12}}, cell(2, 2, 1.3)));
+}
+
+TEST_F(FlatGuard, RefusesAMoveBeyondItsReach) {
+  EXPECT_FALSE(guard(kUnitsPerCell / 4).allows(std::array{VertexId{12}}, cell(2.5, 2, 0)));
+  EXPECT_TRUE(guard(kUnitsPerCell).allows(std::array{VertexId{12}}, cell(2.5, 2, 0)));
+}
+
+TEST_F(FlatGuard, MembersFollowTheVertexTheyWereJoinedTo) {
+  MorphGuard joined = guard();
+  joined.join(std::array{VertexId{12}, VertexId{13}}, VertexId{12});
+  joined.join(std::array{VertexId{7}, VertexId{12}}, VertexId{7});
+  EXPECT_EQ(joined.target_of(13), VertexId{7});
+  EXPECT_EQ(joined.target_of(12), VertexId{7});
+  EXPECT_EQ(joined.target_of(8), VertexId{8});
+}
+
+TEST_F(FlatGuard, CheckStaysWithEveryMemberAfterAJoin) {
+  MorphGuard joined = guard();
+  joined.join(std::array{VertexId{12}, VertexId{13}}, VertexId{12});
+  // fine vertex 13 would be dragged across its neighbours to the far corner
+  EXPECT_FALSE(joined.allows(std::array{VertexId{12}}, cell(0.5, 3.5, 0)));
+}
+
+}  // namespace
+}  // namespace terrane::hierarchy

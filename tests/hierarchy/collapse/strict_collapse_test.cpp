@@ -1,0 +1,134 @@
+#include "hierarchy/collapse/strict_collapse.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/hierarchy/test_meshes.h"
+
+namespace terrane::hierarchy {
+namespace {
+
+using testing::ExactPlacer;
+using testing::field_of;
+using testing::grid_of;
+using testing::terrain_of;
+
+struct PlainError {
+  double max_m = 0;
+  int uncovered = 0;
+  int folded = 0;
+};
+
+/// Tries every triangle for every sample, with barycentric coordinates: slow, and nothing shared
+/// with the code under test.
+PlainError brute_force_error(const TerrainMesh& mesh, const HeightGrid& grid) {
+  PlainError result;
+  std::vector<double> worst(grid.heights_m.size(), -1);
+  for (const Corners& corners : mesh.triangles) {
+    double x[3], y[3], z[3];
+    for (int k = 0; k < 3; ++k) {
+      const Place& place = mesh.vertices[corners[k]].place;
+      x[k] = place.plan.x / double{kUnitsPerCell};
+      y[k] = -place.plan.y / double{kUnitsPerCell};
+      z[k] = place.height_m;
+    }
+    const double area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
+    if (area >= 0) ++result.folded;  // rows run downward: counter-clockwise on the map is negative
+    for (std::int64_t row = 0; row < grid.window.rows; ++row) {
+      for (std::int64_t column = 0; column < grid.window.columns; ++column) {
+        const auto c = static_cast<double>(column), r = static_cast<double>(row);
+        const double w1 = ((c - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (r - y[0])) / area;
+        const double w2 = ((x[1] - x[0]) * (r - y[0]) - (c - x[0]) * (y[1] - y[0])) / area;
+        if (w1 < -1e-9 || w2 < -1e-9 || w1 + w2 > 1 + 1e-9) continue;
+        const double on_mesh = z[0] + w1 * (z[1] - z[0]) + w2 * (z[2] - z[0]);
+        double& error = worst[static_cast<std::size_t>(row * grid.window.columns + column)];
+        error = std::max(error, std::abs(on_mesh - grid.at(column, row)));
+      }
+    }
+  }
+  for (std::size_t i = 0; i < worst.size(); ++i) {
+    if (std::isnan(grid.heights_m[i])) continue;
+    if (worst[i] < 0) ++result.uncovered;
+    result.max_m = std::max(result.max_m, worst[i]);
+  }
+  return result;
+}
+
+StrictResult collapse(const HeightGrid& grid, double tolerance_m) {
+  const ExactPlacer placer;
+  const SampleField field = field_of(grid);
+  return collapse_strictly(terrain_of(grid), field, placer, {}, {.tolerance_m = tolerance_m});
+}
+
+TEST(StrictCollapse, PlaneBecomesAHandfulOfTriangles) {
+  const HeightGrid grid = grid_of(33, 33, [](auto c, auto r) { return 2.0 * c + 0.5 * r; });
+  const StrictResult result = collapse(grid, 0.01);
+  EXPECT_LE(result.mesh.triangles.size(), 16U);
+  const PlainError error = brute_force_error(result.mesh, grid);
+  EXPECT_LE(error.max_m, 0.01);
+  EXPECT_EQ(error.uncovered, 0);
+}
+
+TEST(StrictCollapse, KeepsASpikeThatIsHigherThanTheTolerance) {
+  const HeightGrid grid = grid_of(17, 17, [](auto c, auto r) { return c == 9 && r == 6 ? 50 : 0; });
+  const StrictResult result = collapse(grid, 5);
+  EXPECT_LE(brute_force_error(result.mesh, grid).max_m, 5);
+}
+
+TEST(StrictCollapse, TargetsLeadToVerticesOfTheResult) {
+  const HeightGrid grid = grid_of(9, 9, [](auto c, auto r) { return c * r; });
+  const StrictResult result = collapse(grid, 2);
+  ASSERT_EQ(result.target.size(), 81U);
+  for (const std::uint32_t v : result.target) EXPECT_LT(v, result.mesh.vertices.size());
+}
+
+TEST(StrictCollapse, LockedVerticesStayWhereTheyAre) {
+  const HeightGrid grid = grid_of(9, 9, [](auto, auto) { return 0; });
+  TerrainMesh input = terrain_of(grid);
+  for (TerrainVertex& vertex : input.vertices) {
+    if (vertex.kind == VertexKind::kOutline) vertex.kind = VertexKind::kLocked;
+  }
+  const ExactPlacer placer;
+  const SampleField field = field_of(grid);
+  const StrictResult result = collapse_strictly(input, field, placer, {}, {.tolerance_m = 1});
+  for (std::uint32_t v = 0; v < input.vertices.size(); ++v) {
+    if (input.vertices[v].kind != VertexKind::kLocked) continue;
+    EXPECT_EQ(result.mesh.vertices[result.target[v]].place.plan, input.vertices[v].place.plan);
+  }
+}
+
+class RandomTerrain : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(RandomTerrain, StaysWithinTheBoundCoversEverySampleAndFoldsNothing) {
+  std::mt19937 random(GetParam());
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+  };
+  const auto columns = static_cast<std::int64_t>(uniform(2, 30));
+  const auto rows = static_cast<std::int64_t>(uniform(2, 30));
+  const double relief_m = uniform(0, 40), roughness_m = uniform(0, 6), holes = uniform(0, 0.06);
+  const bool has_cliff = random() % 2 == 0;
+  const HeightGrid grid = grid_of(columns, rows, [&](auto c, auto r) {
+    if (uniform(0, 1) < holes) return static_cast<double>(NAN);
+    const double hill = relief_m * std::sin(0.3 * static_cast<double>(c)) *
+                        std::cos(0.23 * static_cast<double>(r));
+    return hill + uniform(0, roughness_m) + (has_cliff && c > r ? 60.0 : 0.0);
+  });
+  const TerrainMesh full = terrain_of(grid);
+  if (full.triangles.empty()) GTEST_SKIP() << "the dice made no triangle";
+  const PlainError before = brute_force_error(full, grid);
+  const double tolerance_m = uniform(0.5, 12);
+
+  const StrictResult result = collapse(grid, tolerance_m);
+
+  const PlainError after = brute_force_error(result.mesh, grid);
+  EXPECT_LE(after.max_m, tolerance_m + 1e-9);
+  EXPECT_EQ(after.uncovered, before.uncovered);  // samples without a triangle to begin with
+  EXPECT_EQ(after.folded, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomTerrain, ::testing::Range(0U, 300U));
+
+}  // namespace
+}  // namespace terrane::hierarchy
