@@ -3,6 +3,8 @@
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "core/errors.h"
 
 namespace terrane::ingest {
@@ -50,9 +52,13 @@ bool read_samples(GDALRasterBand& band, const Window& window, GDALDataType type,
 
 RasterFile::RasterFile(const std::string& file, const OpenOptions& options) : file_(file) {
   const GdalScope gdal;
-  dataset_ = open_dataset(file, gdal);
-  facts_ = examine_raster(*dataset_, file, options);
+  // not the member yet: that one would be closed outside of the scope if the file is refused
+  GDALDatasetUniquePtr dataset = open_dataset(file, gdal);
+  facts_ = examine_raster(*dataset, file, options);
+  dataset_ = std::move(dataset);
 }
+
+RasterFile::~RasterFile() { close(); }
 
 GDALRasterBand& RasterFile::open_band(const GdalScope& gdal) const {
   if (!dataset_) dataset_ = open_dataset(file_, gdal);

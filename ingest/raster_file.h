@@ -47,6 +47,9 @@ class RasterFile {
  public:
   /// \throws InputError if the file cannot be opened or is no DEM.
   RasterFile(const std::string& file, const OpenOptions& options);
+  ~RasterFile();
+  RasterFile(const RasterFile&) = delete;
+  RasterFile& operator=(const RasterFile&) = delete;
 
   const std::string& file() const { return file_; }
   const RasterFacts& facts() const { return facts_; }
