@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "core/errors.h"
 #include "small_raster.h"
@@ -54,8 +53,7 @@ TEST(GridPlace, TreatsPointRastersLikeAreaOnes) {
   const std::string file = folder.write("area.tif", area);
   // GDAL stores the tie point of the same grid differently and says the same when it opens it
   const std::string point = folder.path_of("point.tif");
-  ASSERT_EQ(
-      std::system(("gdal_translate -q -mo AREA_OR_POINT=Point " + file + " " + point).c_str()), 0);
+  testing::convert(file, point, {"-mo", "AREA_OR_POINT=Point"});
   EXPECT_EQ(open_quietly(point)->place().to_plan({0, 0}).x, -121.75);
   EXPECT_EQ(open_quietly(file)->place().to_plan({0, 0}).x, -121.75);
 }

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "core/errors.h"
@@ -93,9 +92,9 @@ TEST(OpenDem, AContainerNamesItsRasters) {
                                                      .geotransform = north_up(0, 0, 10),
                                                      .crs = "EPSG:32610"});
   const std::string file = folder.path_of("box.gpkg");
-  const std::string convert = "gdal_translate -q -of GPKG " + part + " " + file + " -co ";
-  ASSERT_EQ(std::system((convert + "RASTER_TABLE=heights").c_str()), 0);
-  ASSERT_EQ(std::system((convert + "RASTER_TABLE=depths -co APPEND_SUBDATASET=YES").c_str()), 0);
+  testing::convert(part, file, {"-of", "GPKG", "-co", "RASTER_TABLE=heights"});
+  testing::convert(part, file,
+                   {"-of", "GPKG", "-co", "RASTER_TABLE=depths", "-co", "APPEND_SUBDATASET=YES"});
   EXPECT_THAT(error_of(file), AllOf(HasSubstr("box.gpkg: holds 2 rasters"),
                                     HasSubstr("e.g. GPKG:" + file + ":heights")));
 }

@@ -1,6 +1,7 @@
 #include "small_raster.h"
 
 #include <gdal_priv.h>
+#include <gdal_utils.h>
 #include <ogr_spatialref.h>
 #include <stdlib.h>
 
@@ -114,6 +115,19 @@ std::string RasterFolder::write(const std::string& name, const SmallRaster& rast
 std::string RasterFolder::write_text(const std::string& name, std::string_view text) const {
   std::ofstream(path_ / name, std::ios::binary) << text;
   return path_of(name);
+}
+
+void convert(const std::string& from, const std::string& to,
+             const std::vector<std::string>& arguments) {
+  char** list = nullptr;
+  for (const std::string& argument : arguments) list = CSLAddString(list, argument.c_str());
+  GDALTranslateOptions* options = GDALTranslateOptionsNew(list, nullptr);
+  CSLDestroy(list);
+  const GDALDatasetUniquePtr source(GDALDataset::Open(from.c_str(), GDAL_OF_RASTER));
+  const GDALDatasetUniquePtr result(GDALDataset::FromHandle(
+      GDALTranslate(to.c_str(), GDALDataset::ToHandle(source.get()), options, nullptr)));
+  GDALTranslateOptionsFree(options);
+  if (!result) throw std::runtime_error("cannot write " + to);
 }
 
 std::unique_ptr<Dem> open_quietly(const std::string& source, const OpenOptions& options) {

@@ -72,6 +72,10 @@ class RecordingProgress final : public Progress {
   std::int64_t done_ = 0;
 };
 
+/// What gdal_translate does with these arguments.
+void convert(const std::string& from, const std::string& to,
+             const std::vector<std::string>& arguments);
+
 std::unique_ptr<Dem> open_quietly(const std::string& source, const OpenOptions& options = {});
 
 HeightGrid read_all(const Dem& dem);
