@@ -61,7 +61,7 @@ function apiOf(viewer: Viewer, tileset: Tileset): TerraneApi {
 
 /**
  * Starts the viewer. URL parameters: tileset (address, from the page; default ./tileset.json),
- * tolerance (pixels; default 2), antialias (off for slow machines).
+ * tolerance (pixels; default 1), antialias (off for slow machines).
  */
 async function start(): Promise<void> {
   const parameters = new URLSearchParams(location.search);
@@ -69,10 +69,12 @@ async function start(): Promise<void> {
   const tileset = await fetchTileset(url);
   const canvas = document.getElementById('terrain') as HTMLCanvasElement;
   const viewer = new Viewer(canvas, tileset, {
-    tolerancePx: Math.min(16, Math.max(0.5, Number(parameters.get('tolerance') ?? 2) || 2)),
+    tolerancePx: Math.min(16, Math.max(0.5, Number(parameters.get('tolerance')) || 1)),
     antialias: parameters.get('antialias') !== 'off',
   });
   window.terrane = apiOf(viewer, tileset);
 }
 
-start().catch((error: unknown) => showFatal(error instanceof Error ? error.message : String(error)));
+start().catch((error: unknown) =>
+  showFatal(error instanceof Error ? error.message : String(error)),
+);

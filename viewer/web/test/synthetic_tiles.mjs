@@ -272,7 +272,8 @@ function node(level, x, y, errors) {
 function tileJson({tile, children, bounds: [low, high], errorM}) {
   const {level, x, y, indices} = tile;
   const half = low.map((value, k) => (high[k] - value) / 2);
-  const box = [...low.map((value, k) => value + half[k]), half[0], 0, 0, 0, half[1], 0, 0, 0, half[2]];
+  const center = low.map((value, k) => value + half[k]);
+  const box = [...center, half[0], 0, 0, 0, half[1], 0, 0, 0, half[2]];
   return {
     boundingVolume: {box},
     geometricError: errorM,

@@ -19,6 +19,9 @@ export const kMorphShare = 0.25;
 /** Room for float32 distances on the graphics card: they are good to about 1e-6. */
 export const kSlack = 1 / 1024;
 
+/** In ranges of a level: from where on the coarser ones make room for it. */
+const kPrepareFrom = 3;
+
 /** Index = level; one entry for each level except the root's, in metres. */
 export type Ranges = readonly number[];
 
@@ -34,29 +37,39 @@ export function pixelsPerRadian(heightPx: number, fovDeg: number): number {
 
 /**
  * The ranges at which no level's tolerance covers more than tolerancePx, made larger where the
- * inequality above asks for it, from the finest up.
+ * inequality above asks for it, from the finest up. It asks only where the finer level is shown:
+ * a level that begins at three times its range from the eye makes the coarser ranges grow little by
+ * little, so that nothing jumps when the eye comes near.
+ *
+ * Far from the terrain some of these ranges break the inequality; reducedRanges() takes those
+ * levels out, which are not shown from there.
  *
  * @param pixelScale K of pixelsPerRadian()
  * @param tolerancePx wanted error on the screen, above 0
+ * @param nearestM index = level: distance from the eye to that level's nearest box with children
  */
 export function wantedRanges(
   levels: readonly Level[],
   pixelScale: number,
   tolerancePx: number,
+  nearestM: readonly number[],
 ): Ranges {
   const ranges: number[] = [];
   for (let l = 0; l + 1 < levels.length; ++l) {
     const forError = (levels[l + 1]!.toleranceM * pixelScale) / tolerancePx;
-    const floor = l === 0 ? 0 : smallestAbove(ranges[l - 1]!, levels[l]!.diagonalM);
+    const finerM = ranges[l - 1];
+    const floor = finerM
+      ? smallestAbove(finerM, levels[l]!.diagonalM) * needOf(finerM, nearestM[l]!)
+      : 0;
     ranges.push(Math.max(forError, floor));
   }
   return ranges;
 }
 
 /**
- * Ranges for a picture that is not all loaded: `share` times the wanted ones, made smaller where
- * the inequality asks for it, from the coarsest down. Continuous and growing with share: 0 shows
- * the root alone, 1 what is wanted.
+ * The ranges to show: `share` times the wanted ones, made smaller where the inequality asks for it,
+ * from the coarsest down. What is not all loaded is shown with a share below 1. Continuous and
+ * growing with share: 0 shows the root alone, 1 what is wanted.
  */
 export function reducedRanges(levels: readonly Level[], wanted: Ranges, share: number): Ranges {
   const ranges = wanted.map((range) => range * share);
@@ -70,6 +83,12 @@ export function reducedRanges(levels: readonly Level[], wanted: Ranges, share: n
 /** Where vertices of a level begin and end to morph, in metres from the camera. */
 export function morphInterval(rangeM: number): {beginM: number; endM: number} {
   return {beginM: rangeM * (1 - kMorphShare), endM: rangeM * (1 - kSlack)};
+}
+
+/** 1 where a level with this range is shown, 0 where it is far from it. */
+function needOf(rangeM: number, nearestM: number): number {
+  const share = (kPrepareFrom * rangeM - nearestM) / ((kPrepareFrom - 1) * rangeM);
+  return Math.min(1, Math.max(0, share));
 }
 
 function smallestAbove(finerRangeM: number, diagonalM: number): number {

@@ -1,13 +1,16 @@
-// Floats are fine near 0 only: everything is drawn from an origin near the eye. The origin lies on
-// the coarsest level's lattice, hence on every level's, so a tile's offset from it is a whole number
-// of the tile's steps and exact in float32.
+// Floats are fine near 0 only: everything is drawn from an origin near the eye. It lies on the
+// coarsest level's lattice, hence on every level's, so a tile's offset from it is a whole number of
+// the tile's steps and exact in float32.
 import type {MorphUniforms} from './morph';
 import {morphInterval, type Ranges} from './ranges';
 import type {Vec3} from './vec3';
 
 /** The lattice point next to the eye. */
 export function renderOrigin(eye: Vec3, coarsestStepM: Vec3): Vec3 {
-  const snap = (axis: 0 | 1 | 2) => Math.round(eye[axis] / coarsestStepM[axis]) * coarsestStepM[axis];
+  const snap = (axis: 0 | 1 | 2) => {
+    const stepM = coarsestStepM[axis];
+    return Math.round(eye[axis] / stepM) * stepM;
+  };
   return [snap(0), snap(1), snap(2)];
 }
 

@@ -4,9 +4,9 @@
 // lies on B's border before the morph, in plan, to a quarter of the distance of two samples.
 // - Heights do not count, so a vertical crack cannot hide. Neither can a vertex that only one side
 //   has (it lies on the other side's border line all the same), nor one that morphs elsewhere.
-// - Vertices of the outline of the data stand at least 0.7 samples beside the neighbour's border, so
-//   they are not taken for shared ones. (They may morph *into* the end of a shared border; that is
-//   why places after the morph do not decide.)
+// - Vertices of the outline of the data stand at least 0.7 samples beside the neighbour's border,
+//   so they are not taken for shared ones. (They may morph *into* the end of a shared border; that
+//   is why places after the morph do not decide.)
 //
 // Each shared vertex must coincide with a drawn border vertex of B, in all three float32
 // coordinates; and each of B's with one of A.
@@ -29,6 +29,7 @@ export interface DrawnTile {
 
 /** What checkSeams() found. */
 export interface SeamReport {
+  readonly tiles: number;
   /** Pairs of touching tiles that share at least one border vertex. */
   readonly pairs: number;
   /** Shared border vertices compared, counted from each side. */
@@ -71,7 +72,7 @@ export function checkSeams(tiles: readonly DrawnTile[], cellM: number): SeamRepo
       worstM = Math.max(worstM, found.worstM);
     }
   }
-  return {pairs, vertices, mismatches, worst_m: worstM};
+  return {tiles: tiles.length, pairs, vertices, mismatches, worst_m: worstM};
 }
 
 function drawBorder(tile: DrawnTile): DrawnBorder {

@@ -32,3 +32,20 @@ export function selectTiles(root: Tile, eye: Vec3, ranges: Ranges): Visit[] {
 export function cutOf(visits: readonly Visit[]): Tile[] {
   return visits.filter((visit) => !visit.split).map((visit) => visit.tile);
 }
+
+/**
+ * Index = level: metres from the eye to the nearest box of that level that has children; Infinity
+ * where there is none.
+ */
+export function nearestBoxes(root: Tile, eye: Vec3): number[] {
+  const nearestM = Array<number>(root.level + 1).fill(Infinity);
+  const search = (tile: Tile, distanceM: number): void => {
+    // a box lies in its parent's: nothing below can be nearer
+    if (tile.children.length === 0 || nearestM.every((m, l) => l === 0 || m <= distanceM)) return;
+    nearestM[tile.level] = Math.min(nearestM[tile.level]!, distanceM);
+    const below = tile.children.map((child) => [child, distanceToBox(child.box, eye)] as const);
+    for (const [child, m] of below.sort((a, b) => a[1] - b[1])) search(child, m);
+  };
+  search(root, distanceToBox(root.box, eye));
+  return nearestM;
+}

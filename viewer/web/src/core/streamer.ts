@@ -2,7 +2,7 @@
 // the wanted detail that is loaded.
 import {RequestQueue, type Failure, type Fetch} from './request_queue';
 import {reducedRanges, wantedRanges, type Ranges} from './ranges';
-import {cutOf, selectTiles, type Visit} from './selection';
+import {cutOf, nearestBoxes, selectTiles, type Visit} from './selection';
 import {glideShare, largestReadyShare} from './shown_cut';
 import {TileCache} from './tile_cache';
 import type {Tile, Tileset} from './tileset';
@@ -93,8 +93,9 @@ export class Streamer<C extends Content> {
    */
   update(view: View, nowS: number): Frame {
     const {root, levels} = this.tileset;
-    const wanted = wantedRanges(levels, view.pixelScale, view.tolerancePx);
-    const visits = selectTiles(root, view.eye, wanted);
+    const nearestM = nearestBoxes(root, view.eye);
+    const wanted = wantedRanges(levels, view.pixelScale, view.tolerancePx, nearestM);
+    const visits = selectTiles(root, view.eye, reducedRanges(levels, wanted, 1));
     this.request(visits, view, nowS);
 
     const isReady = (tile: Tile) => this.cache.has(tile.key);
@@ -121,7 +122,7 @@ export class Streamer<C extends Content> {
   }
 }
 
-/** Coarse levels first, because finer ones cannot show without them; then what is seen; then near. */
+/** Coarse levels first: finer ones cannot show without them. Then what is seen; then near ones. */
 function byNeed(visits: readonly Visit[], isInPicture: (tile: Tile) => boolean): Tile[] {
   return visits
     .map((visit) => ({...visit, hidden: Number(!isInPicture(visit.tile))}))

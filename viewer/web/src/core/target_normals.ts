@@ -15,7 +15,7 @@ export interface TileVertices {
 }
 
 /**
- * The normal of each vertex's place at t = 1, in signed bytes as glTF triples of the *child's* axes.
+ * The normal of each vertex's place at t = 1, in signed bytes (glTF triples, the child's steps).
  * A vertex whose place the parent does not hold keeps its own.
  */
 export function targetNormals(child: TileVertices, parent: TileVertices): Int8Array {

@@ -39,9 +39,10 @@ export class Panel {
     const shown = Number.isFinite(figures.shownTolerancePx)
       ? `${figures.shownTolerancePx.toFixed(1)} px`
       : 'coarsest level';
-    const rate = figures.framesPerS === undefined ? 'still' : `${figures.framesPerS.toFixed(0)} fps`;
+    const {framesPerS} = figures;
+    const rate = framesPerS === undefined ? 'still' : `${framesPerS.toFixed(0)} fps`;
     this.stats.textContent =
-      `${figures.triangles.toLocaleString('en')} triangles in ${figures.tiles} tiles\n` +
+      `${figures.triangles.toLocaleString('en')} triangles, ${figures.tiles} tiles\n` +
       `tiles by level: ${levels.join(', ') || 'none'}\n` +
       `shown: ${shown}, ${rate}`;
     this.loading.style.width = figures.loadedShare < 1 ? `${100 * figures.loadedShare}%` : '0';

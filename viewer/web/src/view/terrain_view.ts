@@ -66,7 +66,8 @@ export class TerrainView {
     this.camera.position.fromArray(subtract(eye, this.originM));
     this.camera.far = 1.01 * Math.max(...corners(root.box).map((c) => length(subtract(c, eye))));
     const nearest = Math.max(distanceToBox(root.box, eye), clearanceM / 4);
-    this.camera.near = Math.min(0.9 * this.camera.far, Math.max(0.9 * nearest, this.camera.far / kDepthSpan));
+    const smallest = this.camera.far / kDepthSpan;
+    this.camera.near = Math.min(0.9 * this.camera.far, Math.max(0.9 * nearest, smallest));
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld(true);
     this.shared.eyeM.value.copy(this.camera.position);

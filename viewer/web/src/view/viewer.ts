@@ -53,7 +53,7 @@ export class Viewer {
     this.view = new TerrainView(canvas, tileset, options.antialias);
     this.navigation = new Navigation(canvas, tileset.root.box, invalidate);
     const loader = new TileLoader(tileset.levels, this.view.shared);
-    this.streamer = new Streamer<TileContent>(tileset, (tile, signal) => loader.load(tile, signal), {
+    this.streamer = new Streamer(tileset, (tile, signal) => loader.load(tile, signal), {
       onDrop: disposeContent,
       onChange: invalidate,
     });

@@ -10,7 +10,8 @@ const kRoot: Vec3 = [16, 16, 8];
 function uniformsAt(origin: Vec3, eye: Vec3, rangeM = 1000): MorphUniforms {
   const originM = renderOrigin(eye, kRoot);
   const eyeM = eye.map((value, k) => value - originM[k]!) as unknown as Vec3;
-  return morphUniforms({level: 0, origin, stepM: [0.0625, 0.0625, 0.03125]}, [rangeM], eyeM, originM);
+  const place = {level: 0, origin, stepM: [0.0625, 0.0625, 0.03125] as Vec3};
+  return morphUniforms(place, [rangeM], eyeM, originM);
 }
 
 describe('shownPlace', () => {

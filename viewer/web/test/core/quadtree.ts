@@ -12,14 +12,14 @@ const kHalfHeightM = 150;
  *
  * @param isThere tiles for which this is false are left out, with all below them
  */
-export function quadtree(top: number, isThere = (_: {level: number; x: number; y: number}) => true) {
+export function quadtree(top: number, isThere: (id: Id) => boolean = () => true): Tileset {
   const levels: Level[] = [...Array(top + 1).keys()].map((level) => ({
     level,
     toleranceM: 2 ** level,
     stepM: [0.125, 0.125, 0.125].map((step) => step * 2 ** level) as unknown as Vec3,
     diagonalM: Math.hypot(kLeafM * 2 ** level, kLeafM * 2 ** level, 2 * kHalfHeightM),
   }));
-  const tileset: Tileset = {
+  return {
     root: makeTile(null, {level: top, x: 0, y: 0}, isThere),
     levels,
     tileCells: 64,
@@ -28,7 +28,6 @@ export function quadtree(top: number, isThere = (_: {level: number; x: number; y
     cellM: kLeafM / 64,
     curved: false,
   };
-  return tileset;
 }
 
 interface Id {

@@ -8,6 +8,8 @@ import {
   type Ranges,
 } from '../../src/core/ranges';
 import type {Level} from '../../src/core/tileset';
+import {nearestBoxes} from '../../src/core/selection';
+import {quadtree, randomEye} from './quadtree';
 import {randomSource} from './random';
 
 /** Ladders and boxes without any regularity but growth. */
@@ -19,6 +21,9 @@ function randomLevels(random: () => number): Level[] {
     return {level, toleranceM, diagonalM, stepM: [1, 1, 1] as const};
   });
 }
+
+/** An eye within all boxes. */
+const kWithin = Array<number>(20).fill(0);
 
 /** r_l + diagonal_(l+1) <= (1 - m) r_(l+1) wherever level l is shown at all. */
 function expectTight(levels: readonly Level[], ranges: Ranges) {
@@ -33,7 +38,7 @@ describe('wantedRanges', () => {
     const random = randomSource(1);
     for (let i = 0; i < 500; ++i) {
       const levels = randomLevels(random);
-      expectTight(levels, wantedRanges(levels, 500, 0.5 * 32 ** random()));
+      expectTight(levels, wantedRanges(levels, 500, 0.5 * 32 ** random(), kWithin));
     }
   });
 
@@ -42,8 +47,8 @@ describe('wantedRanges', () => {
     for (let i = 0; i < 500; ++i) {
       const levels = randomLevels(random);
       const tolerancePx = 0.5 * 32 ** random();
-      wantedRanges(levels, 500, tolerancePx).forEach((range, l) =>
-        expect((levels[l + 1]!.toleranceM * 500) / range).toBeLessThanOrEqual(tolerancePx * (1 + 1e-12)),
+      wantedRanges(levels, 500, tolerancePx, kWithin).forEach((range, l) =>
+        expect((levels[l + 1]!.toleranceM * 500) / range / tolerancePx).toBeLessThan(1 + 1e-12),
       );
     }
   });
@@ -55,7 +60,49 @@ describe('wantedRanges', () => {
       diagonalM: 1e-6,
       stepM: [1, 1, 1] as const,
     }));
-    expect(wantedRanges(levels, 500, 2)).toEqual([500, 1000]);
+    expect(wantedRanges(levels, 500, 2, kWithin)).toEqual([500, 1000]);
+  });
+});
+
+describe('wantedRanges, from afar', () => {
+  it('does not make room for levels that are not shown', () => {
+    const levels = randomLevels(randomSource(6));
+    const ranges = wantedRanges(levels, 500, 2, Array<number>(20).fill(1e9));
+    ranges.forEach((range, l) => expect(range).toBe((levels[l + 1]!.toleranceM * 500) / 2));
+  });
+
+  it('is continuous in the distance, and has all room where a level begins', () => {
+    const random = randomSource(7);
+    for (let i = 0; i < 20; ++i) {
+      const levels = randomLevels(random).slice(0, 3);
+      if (levels.length < 3) continue;
+      const all = wantedRanges(levels, 500, 2, kWithin);
+      const from = (m: number) => wantedRanges(levels, 500, 2, [m, m, m]);
+      expect(from(all[0]!)[1]! / all[1]!).toBeCloseTo(1, 12);
+      for (let m = 0; m < 4 * all[0]!; m += all[0]! / 200) {
+        const step = from(m)[1]! - from(m + all[0]! / 200)[1]!;
+        expect(step).toBeGreaterThanOrEqual(0);
+        expect(step).toBeLessThan(all[1]! / 200);
+      }
+    }
+  });
+
+  it('shows every level as if it had all room', () => {
+    const random = randomSource(8);
+    const {root, levels} = quadtree(5);
+    let levelsShown = 0;
+    for (let i = 0; i < 200; ++i) {
+      const eye = randomEye(5, random);
+      const nearestM = nearestBoxes(root, eye);
+      const wanted = wantedRanges(levels, 500, 0.5 * 32 ** random(), nearestM);
+      reducedRanges(levels, wanted, 1).forEach((range, l) => {
+        // a level whose range reaches a box keeps that range: it is never taken out
+        if (nearestM[l + 1]! >= wanted[l]!) return;
+        expect(range).toBeCloseTo(wanted[l]!, 6);
+        ++levelsShown;
+      });
+    }
+    expect(levelsShown).toBeGreaterThan(200);
   });
 });
 
@@ -64,20 +111,21 @@ describe('reducedRanges', () => {
     const random = randomSource(3);
     for (let i = 0; i < 500; ++i) {
       const levels = randomLevels(random);
-      expectTight(levels, reducedRanges(levels, wantedRanges(levels, 500, 2), random()));
+      expectTight(levels, reducedRanges(levels, wantedRanges(levels, 500, 2, kWithin), random()));
     }
   });
 
   it('goes from the root alone to what is wanted', () => {
     const levels = randomLevels(randomSource(4));
-    const wanted = wantedRanges(levels, 500, 2);
+    const wanted = wantedRanges(levels, 500, 2, kWithin);
     expect(reducedRanges(levels, wanted, 0).every((range) => range === 0)).toBe(true);
-    reducedRanges(levels, wanted, 1).forEach((range, l) => expect(range).toBeCloseTo(wanted[l]!, 6));
+    const all = reducedRanges(levels, wanted, 1);
+    all.forEach((range, l) => expect(range).toBeCloseTo(wanted[l]!, 6));
   });
 
   it('grows with the share', () => {
     const levels = randomLevels(randomSource(5));
-    const wanted = wantedRanges(levels, 500, 2);
+    const wanted = wantedRanges(levels, 500, 2, kWithin);
     let last = reducedRanges(levels, wanted, 0);
     for (let share = 0.01; share <= 1; share += 0.01) {
       const ranges = reducedRanges(levels, wanted, share);

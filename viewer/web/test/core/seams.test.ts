@@ -41,13 +41,14 @@ describe('checkSeams', () => {
     expect(uniforms.beginM).toBeLessThan(4500);
     expect(positions.length).toBe(3 * 33 * 33);
     const report = checkSeams(tiles, kCellM);
-    expect(report).toEqual({pairs: 3, vertices: 2 * (33 + 33 + 1), mismatches: 0, worst_m: 0});
+    const vertices = 2 * (33 + 33 + 1);
+    expect(report).toEqual({tiles: 3, pairs: 3, vertices, mismatches: 0, worst_m: 0});
   });
 
   it('finds nothing between level 0 at t = 1 and level 1 at t = 0', () => {
     const report = checkSeams([drawn(0, 1, 0, kApart), drawn(1, 1, 0, kApart)], kCellM);
     // 33 vertices stand on 17 places, which are those of the coarse side
-    expect(report).toEqual({pairs: 1, vertices: 33 + 17, mismatches: 0, worst_m: 0});
+    expect(report).toEqual({tiles: 2, pairs: 1, vertices: 33 + 17, mismatches: 0, worst_m: 0});
   });
 
   it('finds a fine side that has not ended its morph', () => {
@@ -66,7 +67,7 @@ describe('checkSeams', () => {
     const raise = (tile: Stored) => void ++tile.positions[3 * east(7) + 1]!;
     const tiles = [drawn(0, 0, 0, [1e6, 1e7], raise), drawn(0, 1, 0, [1e6, 1e7])];
     const report = checkSeams(tiles, kCellM);
-    expect(report).toEqual({pairs: 1, vertices: 66, mismatches: 2, worst_m: 1 / 16});
+    expect(report).toEqual({tiles: 2, pairs: 1, vertices: 66, mismatches: 2, worst_m: 1 / 16});
   });
 
   it('finds a vertex that morphs elsewhere', () => {

@@ -1,7 +1,8 @@
 import {describe, expect, it} from 'vitest';
 import {morphInterval, reducedRanges, wantedRanges, type Ranges} from '../../src/core/ranges';
 import {areTouching} from '../../src/core/seams';
-import {cutOf, selectTiles} from '../../src/core/selection';
+import {cutOf, nearestBoxes, selectTiles} from '../../src/core/selection';
+import {distanceToBox} from '../../src/core/box';
 import {tilesOf, type Tile} from '../../src/core/tileset';
 import {length, subtract, type Vec3} from '../../src/core/vec3';
 import {kLeafM, quadtree, randomEye} from './quadtree';
@@ -28,7 +29,8 @@ function* randomCuts(seed: number, count: number) {
   const {root, levels} = quadtree(kTop);
   for (let i = 0; i < count; ++i) {
     const eye = randomEye(kTop, random);
-    const wanted = wantedRanges(levels, kPixelScale, 0.5 * 32 ** random());
+    const nearestM = nearestBoxes(root, eye);
+    const wanted = wantedRanges(levels, kPixelScale, 0.5 * 32 ** random(), nearestM);
     // half of the cuts are on their way
     const share = random() < 0.5 ? 1 : random();
     const ranges: Ranges = reducedRanges(levels, wanted, share);
@@ -59,7 +61,7 @@ describe('selectTiles', () => {
 
   it('has the fine side of a border at t = 1 and the coarse side at t = 0', () => {
     let corners = 0;
-    for (const {eye, ranges, cut} of randomCuts(3, 100)) {
+    for (const {eye, ranges, cut} of randomCuts(3, 200)) {
       for (const fine of cut) {
         for (const coarse of cut) {
           if (fine.level + 1 !== coarse.level || !areTouching(fine, coarse)) continue;
@@ -79,8 +81,8 @@ describe('selectTiles', () => {
 
   it('shows finest tiles below the eye when they are wanted', () => {
     const {root, levels} = quadtree(kTop);
-    const ranges = wantedRanges(levels, kPixelScale, 0.5);
     const eye: Vec3 = [1.5 * kLeafM, 1.5 * kLeafM, 200];
+    const ranges = wantedRanges(levels, kPixelScale, 0.5, nearestBoxes(root, eye));
     const cut = cutOf(selectTiles(root, eye, ranges));
     expect(cut.find(({level, x, y}) => level === 0 && x === 1 && y === 1)).toBeDefined();
   });
@@ -88,11 +90,32 @@ describe('selectTiles', () => {
   it('leaves nothing out but what has no data', () => {
     const isThere = ({level, x}: {level: number; x: number}) => level !== 1 || x > 2;
     const {root, levels} = quadtree(3, isThere);
-    const cut = cutOf(selectTiles(root, [0, 0, 100], wantedRanges(levels, kPixelScale, 0.5)));
-    const leaves = (tiles: Iterable<Tile>) => [...tiles].filter((tile) => tile.children.length === 0);
+    const eye: Vec3 = [0, 0, 100];
+    const ranges = wantedRanges(levels, kPixelScale, 0.5, nearestBoxes(root, eye));
+    const cut = cutOf(selectTiles(root, eye, ranges));
+    const leaves = (tiles: Iterable<Tile>) =>
+      [...tiles].filter((tile) => tile.children.length === 0);
     const below = cut.flatMap((tile) => leaves(tilesOf(tile)));
     expect(new Set(below)).toEqual(new Set(leaves(tilesOf(root))));
     expect(below.length).toBe(new Set(below).size);
+  });
+});
+
+describe('nearestBoxes', () => {
+  it('finds what a look at every box finds', () => {
+    const random = randomSource(4);
+    const isThere = ({level, x, y}: {level: number; x: number; y: number}) =>
+      level > 1 || (x + 3 * y) % 5 > 1;
+    const {root} = quadtree(kTop, isThere);
+    for (let i = 0; i < 100; ++i) {
+      const eye = randomEye(kTop, random);
+      const expected = Array<number>(kTop + 1).fill(Infinity);
+      for (const tile of tilesOf(root)) {
+        if (tile.children.length === 0) continue;
+        expected[tile.level] = Math.min(expected[tile.level]!, distanceToBox(tile.box, eye));
+      }
+      expect(nearestBoxes(root, eye)).toEqual(expected);
+    }
   });
 });
 

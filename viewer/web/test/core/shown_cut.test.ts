@@ -1,6 +1,6 @@
 import {describe, expect, it} from 'vitest';
 import {reducedRanges, wantedRanges} from '../../src/core/ranges';
-import {cutOf, selectTiles} from '../../src/core/selection';
+import {cutOf, nearestBoxes, selectTiles} from '../../src/core/selection';
 import {glideShare, largestReadyShare} from '../../src/core/shown_cut';
 import {tilesOf, type Tile} from '../../src/core/tileset';
 import {quadtree, randomEye} from './quadtree';
@@ -18,7 +18,7 @@ describe('largestReadyShare', () => {
       const missingShare = random() ** 2;
       const loaded = new Set(tiles.filter((tile) => tile === root || random() > missingShare));
       const eye = randomEye(kTop, random);
-      const wanted = wantedRanges(levels, 500, 0.5 * 32 ** random());
+      const wanted = wantedRanges(levels, 500, 0.5 * 32 ** random(), nearestBoxes(root, eye));
       const isReady = (tile: Tile) => loaded.has(tile);
       const share = largestReadyShare(root, eye, levels, wanted, isReady);
       const cut = cutOf(selectTiles(root, eye, reducedRanges(levels, wanted, share)));
@@ -30,11 +30,11 @@ describe('largestReadyShare', () => {
 
   it('is the finest such cut: a little more would meet a missing tile', () => {
     const {root, levels} = quadtree(kTop);
-    const wanted = wantedRanges(levels, 500, 1);
     const missing = '0/3/3';
     const isReady = (tile: Tile) => tile.key !== missing;
     // half a kilometre from the parent of the missing tile, whose range is one kilometre
     const eye = [4500, 3500, 100] as const;
+    const wanted = wantedRanges(levels, 500, 1, nearestBoxes(root, eye));
     const share = largestReadyShare(root, eye, levels, wanted, isReady);
     expect(share).toBeGreaterThan(0);
     expect(share).toBeLessThan(1);
@@ -44,8 +44,8 @@ describe('largestReadyShare', () => {
 
   it('is 1 where all is loaded and 0 where the root alone is', () => {
     const {root, levels} = quadtree(kTop);
-    const wanted = wantedRanges(levels, 500, 1);
     const eye = [3000, 3000, 800] as const;
+    const wanted = wantedRanges(levels, 500, 1, nearestBoxes(root, eye));
     expect(largestReadyShare(root, eye, levels, wanted, () => true)).toBe(1);
     const cut = (share: number) =>
       cutOf(selectTiles(root, eye, reducedRanges(levels, wanted, share)));

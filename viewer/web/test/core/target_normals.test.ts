@@ -29,6 +29,7 @@ describe('targetNormals', () => {
     const positions = [0, 0, 0, 2, 2, -1];
     const normals = targetNormals(child, {...flat, positions});
     const size = Math.hypot(76 / 2, 102 / 4);
-    expect([...normals].slice(0, 3)).toEqual([38, 25.5, 0].map((v) => Math.round((127 * v) / size)));
+    const expected = [38, 25.5, 0].map((value) => Math.round((127 * value) / size));
+    expect([...normals].slice(0, 3)).toEqual(expected);
   });
 });

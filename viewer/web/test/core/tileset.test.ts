@@ -26,9 +26,9 @@ describe('parseTileset', () => {
     ['a tileset of someone else', ({terrane}) => (terrane.format = 'x'), /not terrane\/1/],
     ['no root', ({tileset}) => delete tileset.root, /tileset\.json: no "root"/],
     ['a tile without an id', ({tileset}) => delete tileset.root.extras, /no extras\.terrane/],
-    ['a sphere', ({tileset}) => (tileset.root.boundingVolume = {sphere: []}), /3\/0\/0 has no bound/],
-    ['no content', ({tileset}) => delete tileset.root.children[0].content, /2\/0\/0 has no content/],
-    ['a skipped level', ({tileset: {root}}) => (root.children = root.children[0].children), /one level/],
+    ['a sphere', ({tileset}) => (tileset.root.boundingVolume = {}), /3\/0\/0 has no bound/],
+    ['no content', ({tileset}) => delete tileset.root.content, /3\/0\/0 has no content/],
+    ['a skipped level', ({tileset: {root}}) => ++root.extras.terrane.level, /one level/],
     ['a missing level', ({terrane}) => terrane.levels.pop(), /levels are not 0 to 3/],
   ];
   it.each(refused)('refuses %s and says where', (_, spoil, message) => {
