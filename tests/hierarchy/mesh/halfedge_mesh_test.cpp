@@ -29,7 +29,7 @@ struct Oracle {
       std::vector<OracleMesh::VertexHandle> face;
       for (const std::uint32_t v : corners) {
         auto [at, is_new] = handles.try_emplace(v);
-        if (is_new) at->second = mesh.add_vertex({});
+        if (is_new) at->second = mesh.add_vertex(OracleMesh::Point(0, 0, 0));
         face.push_back(at->second);
       }
       is_manifold = is_manifold && mesh.add_face(face).is_valid();
