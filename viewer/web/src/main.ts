@@ -54,7 +54,7 @@ function apiOf(viewer: Viewer, tileset: Tileset): TerraneApi {
     stats: () => viewer.stats(),
     checkSeams: () => viewer.checkSeams(),
     redraw: () => void viewer.redraw(),
-    groundZ: (x, y) => viewer.groundBelow([x, y]),
+    groundZ: (x, y) => viewer.groundZ(x, y),
     bounds: () => bounds(tileset),
   };
 }

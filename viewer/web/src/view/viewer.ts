@@ -1,8 +1,10 @@
 import type {Camera} from '../core/first_camera';
+import {hitDistance} from '../core/ground_hit';
 import {pixelsPerRadian} from '../core/ranges';
 import {checkSeams, type SeamReport} from '../core/seams';
 import {Streamer, type Frame} from '../core/streamer';
 import type {Tile, Tileset} from '../core/tileset';
+import type {Vec3} from '../core/vec3';
 import {FrameRate} from './frame_rate';
 import {groundZ} from './ground';
 import {Navigation} from './navigation';
@@ -51,7 +53,8 @@ export class Viewer {
     const invalidate = () => this.invalidate();
     this.tolerancePx = options.tolerancePx;
     this.view = new TerrainView(canvas, tileset, options.antialias);
-    this.navigation = new Navigation(canvas, tileset.root.box, invalidate);
+    const hit = (direction: Vec3) => this.hitDistance(direction);
+    this.navigation = new Navigation(canvas, tileset.root.box, hit, invalidate);
     const loader = new TileLoader(tileset.levels, this.view.shared);
     this.streamer = new Streamer(tileset, (tile, signal) => loader.load(tile, signal), {
       onDrop: disposeContent,
@@ -109,8 +112,18 @@ export class Viewer {
   }
 
   /** World z of the terrain at a place; undefined beside it or before it is loaded. */
-  groundBelow([x, y] = this.navigation.eye as readonly number[]): number | undefined {
-    return groundZ(x!, y!, this.frame?.cut ?? [], (tile) => this.contentOf(tile));
+  groundZ(x: number, y: number): number | undefined {
+    return groundZ(x, y, this.frame?.cut ?? [], (tile) => this.contentOf(tile));
+  }
+
+  private groundBelow(): number | undefined {
+    const [x, y] = this.navigation.eye;
+    return this.groundZ(x, y);
+  }
+
+  private hitDistance(direction: Vec3): number | undefined {
+    const {eye} = this.navigation;
+    return hitDistance(eye, direction, this.tileset.root.box, (x, y) => this.groundZ(x, y));
   }
 
   private update(): Frame {

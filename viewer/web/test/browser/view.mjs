@@ -2,6 +2,7 @@
 //
 //     node view.mjs --url http://127.0.0.1:8080/ --screenshot view.png
 //         [--tolerance 1] [--steps 20] [--chromium /usr/bin/chromium] [--closeup close.png]
+//         [--most-triangles 50000]
 //         [--covered x,y]   a place, in world metres, without holes in the data around it
 //
 // One line for each check; exit status 0 if all hold.
@@ -17,12 +18,11 @@ const {values: options} = parseArgs({
     tolerance: {type: 'string', default: '1'},
     steps: {type: 'string', default: '20'},
     covered: {type: 'string'},
+    // what software rendering manages in a few seconds
+    'most-triangles': {type: 'string', default: '50000'},
     chromium: {type: 'string', default: '/usr/bin/chromium'},
   },
 });
-
-/** What software rendering manages in a few seconds. */
-const kMostTriangles = 50000;
 
 /** Drawn pixels of the canvas (the sky behind it is clear) and their different colours. */
 function readPicture(page) {
@@ -71,7 +71,7 @@ function checkStep(text, stats, loading, settled) {
   const hasSeams = settled.pairs > 0 || settled.tiles === 1;
   const holds = hasSeams && tight && stats.triangles > 0;
   check(
-    holds && stats.triangles < kMostTriangles,
+    holds && stats.triangles < Number(options['most-triangles']),
     `${text}: ${stats.triangles} triangles, tiles ${levels.join(' ')}; ${settled.pairs} seams, ` +
       `${settled.vertices} vertices, ${settled.mismatches} mismatches (${settled.worst_m} m), ` +
       `${loading.mismatches} while loading`,
