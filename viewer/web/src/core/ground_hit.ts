@@ -5,8 +5,8 @@ const kSteps = 96;
 const kHalvings = 10;
 
 /**
- * Metres from the eye to the first ground along a ray; undefined where it meets none. Ground that is
- * thinner than a step of the search, a fiftieth of the distance or less, may be missed.
+ * Metres from the eye to the first ground along a ray; undefined where it meets none. Ground
+ * that is thinner than a step of the search, a fiftieth of the distance or less, may be missed.
  *
  * @param direction of length 1
  * @param box holds all ground

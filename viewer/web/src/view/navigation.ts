@@ -66,8 +66,8 @@ export class Navigation {
   }
 
   /**
-   * Before the controls see an input, puts what they turn about and zoom to onto the terrain: in the
-   * middle of the picture for a drag, under the cursor for the wheel.
+   * Before the controls see an input, puts what they turn about and zoom to onto the terrain: in
+   * the middle of the picture for a drag, under the cursor for the wheel.
    */
   private followGround(): void {
     const first = {capture: true};
