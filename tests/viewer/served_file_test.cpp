@@ -60,6 +60,12 @@ TEST_F(OpenServedFile, RefusesEveryWayOut) {
   }
 }
 
+TEST_F(OpenServedFile, RefusesDotsEvenWhereTheyWouldStayInside) {
+  for (const char* path : {"/tiles/../index.html", "/./index.html", "/../served/index.html"}) {
+    EXPECT_EQ(read(path), "(none)") << path;
+  }
+}
+
 TEST_F(OpenServedFile, RefusesHiddenFilesAndFolders) {
   for (const char* path : {"/.work/state", "/tiles/.hidden.glb", "/tiles/../.work/state"}) {
     EXPECT_EQ(read(path), "(none)") << path;
