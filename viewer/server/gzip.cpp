@@ -7,7 +7,7 @@
 namespace terrane::viewer {
 namespace {
 
-constexpr int kLevel = 4;                    // half the time of 6 for 3 % more bytes of JSON
+constexpr int kLevel = 4;                    // the viewer: half the time of 6, 5 % more bytes
 constexpr int kGzipWindow = MAX_WBITS + 16;  // zlib's way to ask for the gzip format
 
 std::string_view trimmed(std::string_view text) {
