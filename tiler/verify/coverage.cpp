@@ -136,13 +136,15 @@ Verdict merge(const Verdict& a, const Verdict& b) {
   return a.error_m > b.error_m ? a : b;
 }
 
-std::vector<Verdict> judge(const SampleBlock& block, const PlacedMesh& mesh, double t,
-                           double near_m) {
+std::vector<Verdict> judge(const SampleBlock& block, const std::vector<const PlacedMesh*>& meshes,
+                           double t, double near_m) {
   std::vector<Verdict> verdicts(block.samples.size());
   std::vector<Candidate> candidates;
-  for (const std::uint32_t triangle : mesh.triangles_over(block.leaf)) {
-    candidates.push_back(candidate(mesh, triangle, t));
-    hit_samples(block, candidates.back(), verdicts);
+  for (const PlacedMesh* mesh : meshes) {
+    for (const std::uint32_t triangle : mesh->triangles_over(block.leaf)) {
+      candidates.push_back(candidate(*mesh, triangle, t));
+      hit_samples(block, candidates.back(), verdicts);
+    }
   }
   const Window& window = block.window;
   for (std::int64_t row = window.row; row < window.row + window.rows; ++row) {

@@ -24,10 +24,11 @@ struct Verdict {
 /// What two meshes (neighbours, of which either may cover the sample) say together.
 Verdict merge(const Verdict& a, const Verdict& b);
 
-/// Judges every sample of a block against a tile at morph t. Samples that are no terrain get kNone.
+/// Judges every sample of a block against tiles at morph t. Samples that are no terrain get kNone.
 ///
+/// \param meshes  the tile above the block; while it morphs, also its siblings.
 /// \param near_m  one lattice step in plan: how far from the outline a sample may lie.
-std::vector<Verdict> judge(const SampleBlock& block, const PlacedMesh& mesh, double t,
-                           double near_m);
+std::vector<Verdict> judge(const SampleBlock& block, const std::vector<const PlacedMesh*>& meshes,
+                           double t, double near_m);
 
 }  // namespace terrane::verify

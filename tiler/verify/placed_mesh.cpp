@@ -32,7 +32,8 @@ PlacedMesh::PlacedMesh(TileMesh mesh, const Output& output, const World& world)
       reach_m_(output.reach_m(mesh_.key.level)),
       tiling_(output.tiling),
       locator_(world, output.tiling.window(mesh_.key)),
-      is_flat_(output.frame.is_local) {
+      is_flat_(output.frame.is_local),
+      region_(mesh_.key.level + 1 < output.tiling.level_count() ? mesh_.key.parent() : mesh_.key) {
   place_vertices();
   set_margins();
   fill_buckets();
@@ -93,9 +94,9 @@ void PlacedMesh::for_each_bucket(std::size_t triangle, Visit visit) const {
   const double margin = margin_cells_[triangle];
   const std::int64_t cells = tiling_.tile_cells;
   const auto columns = blocks_touched(low.column - margin, high.column + margin, cells,
-                                      mesh_.key.x << mesh_.key.level, bucket_columns_);
+                                      region_.x << region_.level, bucket_columns_);
   const auto rows = blocks_touched(low.row - margin, high.row + margin, cells,
-                                   mesh_.key.y << mesh_.key.level, bucket_rows_);
+                                   region_.y << region_.level, bucket_rows_);
   for (std::int64_t row = rows[0]; row < rows[1]; ++row) {
     for (std::int64_t column = columns[0]; column < columns[1]; ++column) {
       visit(static_cast<std::size_t>(row * bucket_columns_ + column));
@@ -104,10 +105,9 @@ void PlacedMesh::for_each_bucket(std::size_t triangle, Visit visit) const {
 }
 
 void PlacedMesh::fill_buckets() {
-  const int level = mesh_.key.level;
-  bucket_columns_ =
-      std::min(std::int64_t{1} << level, tiling_.tile_columns(0) - (mesh_.key.x << level));
-  bucket_rows_ = std::min(std::int64_t{1} << level, tiling_.tile_rows(0) - (mesh_.key.y << level));
+  const std::int64_t blocks = std::int64_t{1} << region_.level;
+  bucket_columns_ = std::min(blocks, tiling_.tile_columns(0) - region_.x * blocks);
+  bucket_rows_ = std::min(blocks, tiling_.tile_rows(0) - region_.y * blocks);
   // counting sort: sizes, then begins, then the triangles themselves
   bucket_begin_.assign(static_cast<std::size_t>(bucket_columns_ * bucket_rows_) + 1, 0);
   for (std::size_t n = 0; n < mesh_.triangles.size(); ++n) {
@@ -124,8 +124,8 @@ void PlacedMesh::fill_buckets() {
 }
 
 std::span<const std::uint32_t> PlacedMesh::triangles_over(const TileKey& leaf) const {
-  const std::int64_t column = leaf.x - (mesh_.key.x << mesh_.key.level);
-  const std::int64_t row = leaf.y - (mesh_.key.y << mesh_.key.level);
+  const std::int64_t column = leaf.x - (region_.x << region_.level);
+  const std::int64_t row = leaf.y - (region_.y << region_.level);
   const auto bucket = static_cast<std::size_t>(row * bucket_columns_ + column);
   return std::span(bucket_triangles_)
       .subspan(bucket_begin_[bucket], bucket_begin_[bucket + 1] - bucket_begin_[bucket]);

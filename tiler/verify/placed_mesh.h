@@ -28,7 +28,8 @@ class PlacedMesh {
   /// Cells by which a triangle may reach out of the box of its corners' grid positions.
   double margin_cells(std::size_t triangle) const { return margin_cells_[triangle]; }
 
-  /// Triangles that may cover samples of a leaf block below this tile.
+  /// Triangles that may cover samples of a leaf block below this tile's parent: a seam between
+  /// siblings moves, so that while it morphs a tile covers samples of its siblings.
   std::span<const std::uint32_t> triangles_over(const TileKey& leaf) const;
 
   /// Triangles that are not seen from above at t: turned over, on edge or without area.
@@ -55,6 +56,7 @@ class PlacedMesh {
   bool is_flat_;  // a local frame: verticals are parallel
   std::vector<std::array<GridLocator::Located, 2>> located_;  // at t = 0 and t = 1
   std::vector<float> margin_cells_;
+  TileKey region_;  // the parent, whose leaf blocks have a bucket each
   std::int64_t bucket_columns_ = 1;
   std::int64_t bucket_rows_ = 1;
   std::vector<std::uint32_t> bucket_begin_;

@@ -10,6 +10,7 @@
 #include <map>
 
 #include "core/errors.h"
+#include "tiler/verify/block_judge.h"
 #include "tiler/verify/listing_check.h"
 #include "tiler/verify/output.h"
 #include "tiler/verify/sample_tally.h"
@@ -93,72 +94,7 @@ Lattice scaled(const Lattice& place, const Lattice& ratio) {
   return {place[0] * ratio[0], place[1] * ratio[1], place[2] * ratio[2]};
 }
 
-/// Judges the samples of one leaf block against the tiles above it, at every level and time.
-class BlockJudge {
- public:
-  BlockJudge(const Output& output, const std::map<TileKey, TileFindings>& open)
-      : output_(output), open_(open) {}
-
-  BlockFindings judge_block(const SampleBlock& block) const {
-    BlockFindings findings{.leaf = block.leaf, .window = block.window};
-    findings.rim = rim_of(block);
-    const int levels = static_cast<int>(output_.levels.size());
-    for (int level = 0; level < levels; ++level) {
-      const int times = level + 1 == levels ? 1 : static_cast<int>(kTimes.size());
-      for (int time = 0; time < times; ++time) judge_slot(block, {level, time}, findings);
-    }
-    return findings;
-  }
-
- private:
-  static std::vector<SamplePlace> rim_of(const SampleBlock& block) {
-    std::vector<SamplePlace> rim;
-    for_each_terrain_sample(block, [&](std::int64_t column, std::int64_t row) {
-      if (block.is_rim(column, row)) rim.push_back({column, row});
-    });
-    return rim;
-  }
-
-  template <typename Visit>
-  static void for_each_terrain_sample(const SampleBlock& block, Visit visit) {
-    const Window& window = block.window;
-    for (std::int64_t row = window.row; row < window.row + window.rows; ++row) {
-      for (std::int64_t column = window.column; column < window.column + window.columns; ++column) {
-        if (block.at(column, row).is_terrain) visit(column, row);
-      }
-    }
-  }
-
-  std::vector<Verdict> verdicts_of(const SampleBlock& block, const Slot& slot) const {
-    const TileKey& leaf = block.leaf;
-    const auto& tile = open_.at({slot.level, leaf.x >> slot.level, leaf.y >> slot.level});
-    if (!tile.placed) return std::vector<Verdict>(block.samples.size());
-    const double near_m = slot.time == 0
-                              ? output_.levels[static_cast<std::size_t>(slot.level)].plan_step_m()
-                              : output_.reach_m(slot.level);
-    return judge(block, *tile.placed, kTimes[static_cast<std::size_t>(slot.time)], near_m);
-  }
-
-  void judge_slot(const SampleBlock& block, const Slot& slot, BlockFindings& findings) const {
-    const std::vector<Verdict> verdicts = verdicts_of(block, slot);
-    const double limit_m = tolerance_m(output_.levels, slot) * (1 + 1e-9);
-    BlockFindings::OfSlot of_slot{.slot = slot, .inside = {}, .rim = {}};
-    for_each_terrain_sample(block, [&](std::int64_t column, std::int64_t row) {
-      const Verdict& verdict = verdicts[block.index(column, row)];
-      if (block.is_rim(column, row)) {
-        of_slot.rim.push_back(verdict);
-      } else {
-        of_slot.inside.add(verdict, {column, row}, limit_m);
-      }
-    });
-    findings.slots.push_back(std::move(of_slot));
-  }
-
-  const Output& output_;
-  const std::map<TileKey, TileFindings>& open_;
-};
-
-/// Walks the quadtree depth first, so that only tiles between the root and one batch are in memory.
+/// Walks the quadtree depth first: in memory are one batch, the tiles above it and their siblings.
 class Verification {
  public:
   Verification(const Output& output, const HeightSource& heights, const World& world,
@@ -180,7 +116,10 @@ class Verification {
     const Tiling& tiling = output_.tiling;
     const std::vector<std::string> listing = check_listing(output_, world_, domain_, report_);
     progress_.begin("verifying tiles", tiling.tile_columns(0) * tiling.tile_rows(0));
-    visit({tiling.level_count() - 1, 0, 0});
+    const TileKey root{tiling.level_count() - 1, 0, 0};
+    examine({root});
+    visit(root);
+    finish(root);
     take_samples();
     check_levels();
     add_problems(listing, report_);
@@ -194,24 +133,28 @@ class Verification {
     return report_.levels[static_cast<std::size_t>(key.level)];
   }
 
+  /// Judges everything below a tile that has been examined, and finishes all tiles below it.
   void visit(const TileKey& key) {
     if (key.level <= kBatchLevel) {
       visit_batch(key);
       return;
     }
-    examine({key});
-    for (const TileKey& child : output_.tiling.children(key)) visit(child);
-    finish(key);
+    // all children first: while they morph, each covers samples of the others
+    const std::vector<TileKey> children = output_.tiling.children(key);
+    examine(children);
+    for (const TileKey& child : children) visit(child);
+    for (const TileKey& child : children) finish(child);
   }
 
   void visit_batch(const TileKey& key) {
-    const std::vector<TileKey> keys = output_.tiling.subtree(key);
-    examine(keys);
+    std::vector<TileKey> below = output_.tiling.subtree(key);
     std::vector<TileKey> leaves;
-    std::copy_if(keys.begin(), keys.end(), std::back_inserter(leaves),
+    std::copy_if(below.begin(), below.end(), std::back_inserter(leaves),
                  [](const TileKey& tile) { return tile.level == 0; });
+    below.pop_back();  // the tile itself
+    examine(below);
     judge_leaves(leaves);
-    for (const TileKey& tile : keys) finish(tile);
+    for (const TileKey& tile : below) finish(tile);
     progress_.advance(static_cast<std::int64_t>(leaves.size()));
   }
 
@@ -224,11 +167,10 @@ class Verification {
   }
 
   void judge_leaves(const std::vector<TileKey>& leaves) {
-    const BlockJudge judge(output_, open_);
     std::vector<BlockFindings> findings(leaves.size());
     tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
-      findings[n] =
-          judge.judge_block(read_sample_block(heights_, world_, output_.tiling, leaves[n]));
+      findings[n] = judge_block(read_sample_block(heights_, world_, output_.tiling, leaves[n]),
+                                output_, open_);
     });
     // added up in the order of the walk, whoever judged them
     for (const BlockFindings& found : findings) {

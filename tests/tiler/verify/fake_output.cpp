@@ -287,13 +287,14 @@ std::array<double, 12> box_of(const FakeTile& tile, const FakeOutput& output) {
   const auto& step = output.levels[static_cast<std::size_t>(tile.level)].step_m;
   std::array<double, 2> low = {1e30, 1e30};
   std::array<double, 2> high = {-1e30, -1e30};
-  for (const Triple& position : tile.position) {
+  for (std::size_t v = 0; v < tile.position.size(); ++v) {
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      // half a coarsest step for the rounding of the tiles below
-      const double reach = output.levels.back().step_m[axis];
-      const double at = static_cast<double>(position[axis]) * step[axis];
-      low[axis] = std::min(low[axis], at - reach * tile.level);
-      high[axis] = std::max(high[axis], at + reach * tile.level);
+      // a parent's box has room for the rounding of the tiles below
+      const double reach = output.levels.back().step_m[axis] * tile.level;
+      const double at = static_cast<double>(tile.position[v][axis]) * step[axis];
+      const double to = at + static_cast<double>(tile.morph[v][axis]) * step[axis];
+      low[axis] = std::min({low[axis], at - reach, to - reach});
+      high[axis] = std::max({high[axis], at + reach, to + reach});
     }
   }
   return {(low[0] + high[0]) / 2,

@@ -70,6 +70,16 @@ TEST(VerifySamples, FindTheKnownErrorsOfALevelThatMissesEveryOtherColumn) {
   }
 }
 
+TEST(VerifySamples, AreCoveredByASiblingWhenTheSeamBetweenThemMoves) {
+  // leaves of 3 cells: their seam at column 3 goes to column 2, which is no border of level 1
+  const FakeDem dem({13, 13},
+                    [](auto column, auto row) { return static_cast<float>(4 * column + 8 * row); });
+  const FlatPlace place;
+  const VerifyReport report = verdict_on(halved_grids(dem, flat_world(place), 3, 1), dem, place);
+  EXPECT_TRUE(report.holds()) << to_text(report);
+  EXPECT_EQ(report.levels.size(), 3U);
+}
+
 TEST(VerifySamples, AreOverTheToleranceByTheSmallestAmount) {
   const FakeDem dem = ridges();
   const FlatPlace place;
