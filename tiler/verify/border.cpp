@@ -148,7 +148,7 @@ std::array<SeamVertices, 4> side_vertices(const PlacedMesh& mesh, const Boundary
                                           double step_m) {
   const auto located = locate_exactly(mesh, boundary);
   std::array<SeamVertices, 4> sides;
-  for (const Side side : {Side::kWest, Side::kEast, Side::kNorth, Side::kSouth}) {
+  for (const Side side : kSides) {
     const Line line = side_line(tile_window, side);
     const std::vector<Run> runs = domain.shared_runs(line);
     if (runs.empty()) continue;

@@ -64,6 +64,48 @@ std::vector<TileKey> Tiling::subtree(const TileKey& key) const {
   return keys;
 }
 
+Side opposite(Side side) {
+  switch (side) {
+    case Side::kWest:
+      return Side::kEast;
+    case Side::kEast:
+      return Side::kWest;
+    case Side::kNorth:
+      return Side::kSouth;
+    case Side::kSouth:
+      break;
+  }
+  return Side::kNorth;
+}
+
+TileKey neighbour(const TileKey& key, Side side) {
+  switch (side) {
+    case Side::kWest:
+      return {key.level, key.x - 1, key.y};
+    case Side::kEast:
+      return {key.level, key.x + 1, key.y};
+    case Side::kNorth:
+      return {key.level, key.x, key.y - 1};
+    case Side::kSouth:
+      break;
+  }
+  return {key.level, key.x, key.y + 1};
+}
+
+bool is_on_side(const TileKey& child, Side side) {
+  switch (side) {
+    case Side::kWest:
+      return child.x % 2 == 0;
+    case Side::kEast:
+      return child.x % 2 == 1;
+    case Side::kNorth:
+      return child.y % 2 == 0;
+    case Side::kSouth:
+      break;
+  }
+  return child.y % 2 == 1;
+}
+
 Window with_ring(const Window& window, const GridShape& shape) {
   const std::int64_t column = std::max<std::int64_t>(window.column - 1, 0);
   const std::int64_t row = std::max<std::int64_t>(window.row - 1, 0);

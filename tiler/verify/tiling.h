@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
 #include <string>
@@ -18,6 +19,20 @@ struct TileKey {
   auto operator<=>(const TileKey&) const = default;
   TileKey parent() const { return {level + 1, x / 2, y / 2}; }
 };
+
+/// The side of a tile towards a neighbour.
+enum class Side { kWest, kEast, kNorth, kSouth };
+
+inline constexpr std::array<Side, 4> kSides = {Side::kWest, Side::kEast, Side::kNorth,
+                                               Side::kSouth};
+
+Side opposite(Side side);
+
+/// The tile of the same level beyond a side; it may lie outside the DEM.
+TileKey neighbour(const TileKey& key, Side side);
+
+/// True if a tile's side is part of that side of its parent.
+bool is_on_side(const TileKey& child, Side side);
 
 /// "tile 0/3/4": level, x, y, as in the file name.
 std::string to_string(const TileKey& key);

@@ -18,9 +18,6 @@ struct Line {
   std::int64_t to = 0;
 };
 
-/// The side of a tile towards a neighbour.
-enum class Side { kWest, kEast, kNorth, kSouth };
-
 Line side_line(const Window& tile_window, Side side);
 
 /// A stretch of a line, both ends included.

@@ -36,50 +36,6 @@ void add_problems(const std::vector<std::string>& lines, VerifyReport& report) {
   report.problems_left_out += static_cast<std::int64_t>(lines.size() - shown);
 }
 
-Side opposite(Side side) {
-  switch (side) {
-    case Side::kWest:
-      return Side::kEast;
-    case Side::kEast:
-      return Side::kWest;
-    case Side::kNorth:
-      return Side::kSouth;
-    case Side::kSouth:
-      break;
-  }
-  return Side::kNorth;
-}
-
-TileKey neighbour(const TileKey& key, Side side) {
-  switch (side) {
-    case Side::kWest:
-      return {key.level, key.x - 1, key.y};
-    case Side::kEast:
-      return {key.level, key.x + 1, key.y};
-    case Side::kNorth:
-      return {key.level, key.x, key.y - 1};
-    case Side::kSouth:
-      break;
-  }
-  return {key.level, key.x, key.y + 1};
-}
-
-bool is_on_side(const TileKey& child, Side side) {
-  switch (side) {
-    case Side::kWest:
-      return child.x % 2 == 0;
-    case Side::kEast:
-      return child.x % 2 == 1;
-    case Side::kNorth:
-      return child.y % 2 == 0;
-    case Side::kSouth:
-      break;
-  }
-  return child.y % 2 == 1;
-}
-
-constexpr std::array<Side, 4> kSides = {Side::kWest, Side::kEast, Side::kNorth, Side::kSouth};
-
 /// How many units of the finer lattice one of the coarser is, per axis.
 Lattice steps_ratio(const LevelEntry& fine, const LevelEntry& coarse) {
   Lattice ratio;
