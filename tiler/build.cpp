@@ -44,7 +44,7 @@ class Build {
         const BuildOptions& options, const std::filesystem::path& out, Progress& progress)
       : pyramid_(heights.shape(), options.tile_cells),
         world_(place, heights.shape()),
-        lattice_(pyramid_, world_, statistics),
+        lattice_(pyramid_, world_, statistics, options.tolerance_m),
         source_{heights, world_, pyramid_, lattice_},
         is_mirrored_(is_mirrored(world_, heights.shape())),
         folder_(out),

@@ -24,10 +24,9 @@ using hierarchy::TerrainMesh;
 using hierarchy::TerrainVertex;
 using hierarchy::VertexKind;
 
-// vertices move by at most 0.71 steps when a level is rounded anew, on steps twice as wide: both
-// corners of an altitude together 2.9 steps of this level
+// where the next level's steps are twice as wide, rounding moves a vertex by up to 0.71 of them: both
+// ends of an altitude together by 2.9 steps of this level
 constexpr double kSmallestAltitudeSteps = 4;
-constexpr std::int64_t kLargestDisplacement = 32767;
 
 /// Edges with a triangle on one side only: both their ends are samples.
 std::vector<Edge> rim_of(const TileMesh& mesh) {
@@ -93,7 +92,6 @@ class TileBuild {
     StrictOptions options{.tolerance_m = 0.999 * tolerance_m};
     options.smallest_altitude_cells =
         kSmallestAltitudeSteps * source_.lattice.step_m(tile_.level).x() / frame_.spacing_m();
-    if (!finer.empty()) options.reach = reach();
 
     constexpr int kMostTries = 6;
     for (int tries = 1;; ++tries) {
@@ -118,11 +116,6 @@ class TileBuild {
             frame_.drop_m(static_cast<double>(column), static_cast<double>(row)));
       }
     }
-  }
-
-  std::int64_t reach() const {
-    const LatticePoint ratio = source_.lattice.refine({1, 1, 1}, tile_.level - 1);
-    return kLargestDisplacement / std::max({ratio.i, ratio.j, ratio.k}) - 1;
   }
 
   TileMesh written_mesh(const TerrainMesh& terrain) const {

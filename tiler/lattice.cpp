@@ -31,10 +31,17 @@ Eigen::Vector3d extent(const Pyramid& pyramid, const WorldFrame& world, const Ti
   return high - low;
 }
 
-double step_for(double extent_m) {
+/// The smallest power of two of which extent_m has at most \p steps.
+double smallest_step(double extent_m, double steps) {
+  return std::exp2(std::ceil(std::log2(extent_m / steps)));
+}
+
+double leaf_step(double extent_m, double tolerance_m) {
   // a flat DEM has no relief at all, but wants a step
   constexpr double kFinestStep_m = 1.0 / 1024;
-  return std::max(kFinestStep_m, std::exp2(std::ceil(std::log2(extent_m / kUsableSteps))));
+  const double step_m = std::min(smallest_step(extent_m, kUsableSteps),
+                                 std::exp2(std::floor(std::log2(tolerance_m / 16))));
+  return std::max({kFinestStep_m, step_m, smallest_step(extent_m, Lattice::kMostSteps)});
 }
 
 std::int64_t halve_up(std::int64_t value, std::int64_t ratio) {
@@ -46,15 +53,20 @@ std::int64_t halve_up(std::int64_t value, std::int64_t ratio) {
 }  // namespace
 
 Lattice::Lattice(const Pyramid& pyramid, const WorldFrame& world,
-                 const HeightStatistics& heights) {
+                 const HeightStatistics& heights, double tolerance_m) {
   for (int level = 0; level < pyramid.level_count(); ++level) {
     Eigen::Vector3d largest = Eigen::Vector3d::Zero();
     for (const TileId& tile : pyramid.tiles(level)) {
       largest = largest.cwiseMax(extent(pyramid, world, tile, heights));
     }
-    const double plan_step_m = step_for(std::max(largest.x(), largest.y()));
-    steps_m_.push_back({plan_step_m, plan_step_m, step_for(largest.z())});
-    if (level > 0) steps_m_[level] = steps_m_[level].cwiseMax(steps_m_[level - 1]);
+    largest.x() = largest.y() = std::max(largest.x(), largest.y());
+    Eigen::Vector3d step_m;
+    for (int axis = 0; axis < 3; ++axis) {
+      step_m[axis] = level == 0 ? leaf_step(largest[axis], tolerance_m)
+                                : std::max(steps_m_[level - 1][axis],
+                                           smallest_step(largest[axis], kMostSteps));
+    }
+    steps_m_.push_back(step_m);
   }
 }
 

@@ -15,8 +15,15 @@ namespace terrane::tiler {
 /// multiples of the finer level's.
 class Lattice {
  public:
-  /// Chooses the finest steps for which every tile fits 16 bits on each axis.
-  Lattice(const Pyramid& pyramid, const WorldFrame& world, const HeightStatistics& heights);
+  /// Most steps that a tile spans on an axis: two bits less than a float holds, so that a viewer's
+  /// sums of position and offset are exact a few tiles away.
+  static constexpr double kMostSteps = 1 << 22;
+
+  /// Chooses the steps: the finest for which leaf tiles fit 16 bits, but a sixteenth of the
+  /// tolerance at most. Coarser levels keep them as long as kMostSteps allows: rounding a level
+  /// anew moves its vertices, which steep triangles do not take well.
+  Lattice(const Pyramid& pyramid, const WorldFrame& world, const HeightStatistics& heights,
+          double tolerance_m);
 
   /// \param steps_m  east, north, up for each level.
   explicit Lattice(std::vector<Eigen::Vector3d> steps_m) : steps_m_(std::move(steps_m)) {}

@@ -17,7 +17,8 @@ FieldPoint field_point(const Place& place) {
   return {hierarchy::column_of(place.plan), hierarchy::row_of(place.plan), 0};
 }
 
-constexpr double kOnEdge_cells = 1e-7;
+// in cells, and as a share of a triangle
+constexpr double kOnEdge = 1e-7;
 
 class Measurement {
  public:
@@ -32,14 +33,22 @@ class Measurement {
         worst_m_(static_cast<std::size_t>(window.columns * window.rows), kUnmeasured) {}
 
   void add_triangle(const Place& a, const Place& b, const Place& c) {
+    // as a ray along the plumb line meets a triangle (Moeller and Trumbore 1997)
     const Eigen::Vector3d corner = world(a);
-    const Eigen::Vector3d normal = (world(b) - corner).cross(world(c) - corner);
-    for_each_span(field_point(a), field_point(b), field_point(c), extent_, kOnEdge_cells,
+    const Eigen::Vector3d side_b = world(b) - corner, side_c = world(c) - corner;
+    const double slack_cells = kOnEdge + std::max({bend_cells(a, b), bend_cells(b, c),
+                                                   bend_cells(c, a)});
+    for_each_span(field_point(a), field_point(b), field_point(c), extent_, slack_cells,
                   [&](std::int64_t row, std::int64_t first, std::int64_t last) {
                     for (std::int64_t column = first; column <= last; ++column) {
                       const Plumb plumb = plumb_at(column, row);
-                      add(column, row,
-                          normal.dot(corner - plumb.base) / normal.dot(plumb.up));
+                      const Eigen::Vector3d p = plumb.up.cross(side_c);
+                      const Eigen::Vector3d s = plumb.base - corner;
+                      const Eigen::Vector3d q = s.cross(side_b);
+                      const double scale = 1 / side_b.dot(p);
+                      const double u = s.dot(p) * scale, v = plumb.up.dot(q) * scale;
+                      if (u < -kOnEdge || v < -kOnEdge || u + v > 1 + kOnEdge) continue;
+                      add(column, row, side_c.dot(q) * scale);
                     }
                     return true;
                   });
@@ -87,6 +96,20 @@ class Measurement {
 
   double& worst_m(std::int64_t column, std::int64_t row) {
     return worst_m_[static_cast<std::size_t>(row * window_.columns + column)];
+  }
+
+  /// How far the straight edge in the world lies beside the straight line over the grid, about.
+  double bend_cells(const Place& a, const Place& b) const {
+    const FieldPoint from = field_point(a), to = field_point(b);
+    const auto base = [&](double t) -> Eigen::Vector3d {
+      return frame_
+          .plumb(from.column + t * (to.column - from.column), from.row + t * (to.row - from.row))
+          .base;
+    };
+    const Plumb middle = frame_.plumb((from.column + to.column) / 2, (from.row + to.row) / 2);
+    const Eigen::Vector3d gap = middle.base - (base(0) + base(1)) / 2;
+    constexpr double kToBeSure = 2;
+    return kToBeSure * (gap - gap.dot(middle.up) * middle.up).norm() / frame_.spacing_m();
   }
 
   /// A sample on an edge is under two triangles: the worse one stays, and it counts once.

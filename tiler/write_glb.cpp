@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
-#include <limits>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -21,6 +21,7 @@ namespace {
 constexpr const char* kMeshopt = "EXT_meshopt_compression";
 constexpr const char* kQuantization = "KHR_mesh_quantization";
 
+using Steps = std::array<std::int32_t, 3>;
 /// Four and not three: meshopt codes vertices of whole words.
 using Short3 = std::array<std::int16_t, 4>;
 using Byte3 = std::array<std::int8_t, 4>;
@@ -28,8 +29,8 @@ using Byte3 = std::array<std::int8_t, 4>;
 /// What goes into the buffers, in the order of the vertex cache.
 struct Attributes {
   LatticePoint origin;
-  std::vector<Short3> positions;
-  std::vector<Short3> morphs;
+  std::vector<Steps> positions;
+  std::vector<Steps> morphs;
   std::vector<Byte3> normals;
   std::vector<std::uint32_t> indices;
 };
@@ -43,20 +44,28 @@ LatticePoint middle_of(std::span<const LatticePoint> points) {
   return {(low.i + high.i) / 2, (low.j + high.j) / 2, (low.k + high.k) / 2};
 }
 
-std::int16_t short_of(std::int64_t value, const TileId& tile) {
-  if (value < std::numeric_limits<std::int16_t>::min() ||
-      value > std::numeric_limits<std::int16_t>::max()) {
+// the filter's mantissas have 24 bits, and floats hold every integer of that size
+constexpr std::int64_t kMostSteps = (1 << 23) - 1;
+
+std::int32_t step_of(std::int64_t value, const TileId& tile) {
+  if (std::abs(value) > kMostSteps) {
     throw OutputError(fmt::format(
-        "tile {}: spans more than 65,536 lattice steps. This is a defect of terrane; please report "
-        "it with the DEM's size and CRS",
+        "tile {}: spans more than 24 bits of lattice steps. This is a defect of terrane; please "
+        "report it with the DEM's size and CRS",
         path_of(tile)));
   }
-  return static_cast<std::int16_t>(value);
+  return static_cast<std::int32_t>(value);
 }
 
 /// b - a in glTF's axes: x east, y up, z south.
-Short3 y_up(const LatticePoint& a, const LatticePoint& b, const TileId& tile) {
-  return {short_of(b.i - a.i, tile), short_of(b.k - a.k, tile), short_of(a.j - b.j, tile), 0};
+Steps y_up(const LatticePoint& a, const LatticePoint& b, const TileId& tile) {
+  return {step_of(b.i - a.i, tile), step_of(b.k - a.k, tile), step_of(a.j - b.j, tile)};
+}
+
+bool fits_16_bits(const std::vector<Steps>& values) {
+  return std::ranges::all_of(values, [](const Steps& v) {
+    return std::ranges::all_of(v, [](std::int32_t c) { return std::int16_t(c) == c; });
+  });
 }
 
 /// Normals are divided by the node's scale when drawn: multiply first.
@@ -102,11 +111,33 @@ Attributes arrange(const TileId& tile, const TileMesh& mesh, std::span<const Lat
 class Buffers {
  public:
   template <class T>
-  int add_vertices(const std::vector<T>& values) {
+  int add_vertices(const std::vector<T>& values, const char* filter = nullptr) {
     std::vector<unsigned char> coded(meshopt_encodeVertexBufferBound(values.size(), sizeof(T)));
     coded.resize(meshopt_encodeVertexBuffer(coded.data(), coded.size(), values.data(),
                                             values.size(), sizeof(T)));
-    return add(coded, values.size(), sizeof(T), "ATTRIBUTES", true);
+    return add(coded, values.size(), sizeof(T), "ATTRIBUTES", true, filter);
+  }
+
+  /// Whole numbers: as 16 bits where they fit, else as floats. A float is sent as the exponential
+  /// filter's word (exponent 0 and 24 bits of mantissa: the number itself), which codes as well as
+  /// an integer.
+  int add_steps(const std::vector<Steps>& values, bool is_short) {
+    if (is_short) {
+      std::vector<Short3> shorts;
+      for (const Steps& v : values) {
+        shorts.push_back({static_cast<std::int16_t>(v[0]), static_cast<std::int16_t>(v[1]),
+                          static_cast<std::int16_t>(v[2]), 0});
+      }
+      return add_vertices(shorts);
+    }
+    std::vector<std::array<std::uint32_t, 3>> words;
+    for (const Steps& v : values) {
+      constexpr std::uint32_t kMantissa = 0xffffff;
+      words.push_back({static_cast<std::uint32_t>(v[0]) & kMantissa,
+                       static_cast<std::uint32_t>(v[1]) & kMantissa,
+                       static_cast<std::uint32_t>(v[2]) & kMantissa});
+    }
+    return add_vertices(words, "EXPONENTIAL");
   }
 
   int add_indices(const std::vector<std::uint32_t>& indices, std::size_t vertices,
@@ -114,7 +145,7 @@ class Buffers {
     std::vector<unsigned char> coded(meshopt_encodeIndexBufferBound(indices.size(), vertices));
     coded.resize(meshopt_encodeIndexBuffer(coded.data(), coded.size(), indices.data(),
                                            indices.size()));
-    return add(coded, indices.size(), bytes_per_index, "TRIANGLES", false);
+    return add(coded, indices.size(), bytes_per_index, "TRIANGLES", false, nullptr);
   }
 
   nlohmann::ordered_json views() const { return views_; }
@@ -123,7 +154,7 @@ class Buffers {
 
  private:
   int add(const std::vector<unsigned char>& coded, std::size_t count, std::size_t stride,
-          const char* mode, bool is_vertices) {
+          const char* mode, bool is_vertices, const char* filter) {
     nlohmann::ordered_json view{{"buffer", 1}};
     view["byteOffset"] = fallback_;
     view["byteLength"] = count * stride;
@@ -133,6 +164,7 @@ class Buffers {
     view["extensions"][kMeshopt] = {{"buffer", 0},         {"byteOffset", bytes_.size()},
                                     {"byteLength", coded.size()}, {"byteStride", stride},
                                     {"mode", mode},        {"count", count}};
+    if (filter != nullptr) view["extensions"][kMeshopt]["filter"] = filter;
     views_.push_back(std::move(view));
     fallback_ += (count * stride + 3) / 4 * 4;
     bytes_.append(coded.begin(), coded.end());
@@ -155,13 +187,19 @@ int add_accessor(tinygltf::Model& model, int view, std::size_t count, int compon
   return static_cast<int>(model.accessors.size()) - 1;
 }
 
-void set_bounds(tinygltf::Accessor& accessor, const std::vector<Short3>& values) {
+/// An accessor of whole numbers, with its bounds.
+int add_steps(tinygltf::Model& model, Buffers& buffers, const std::vector<Steps>& values) {
+  const bool is_short = fits_16_bits(values);
+  const int added = add_accessor(
+      model, buffers.add_steps(values, is_short), values.size(),
+      is_short ? TINYGLTF_COMPONENT_TYPE_SHORT : TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto [low, high] = std::ranges::minmax(
-        values, {}, [axis](const Short3& v) { return v[axis]; });
-    accessor.minValues.push_back(low[axis]);
-    accessor.maxValues.push_back(high[axis]);
+    const auto [low, high] =
+        std::ranges::minmax(values, {}, [axis](const Steps& v) { return v[axis]; });
+    model.accessors[added].minValues.push_back(low[axis]);
+    model.accessors[added].maxValues.push_back(high[axis]);
   }
+  return added;
 }
 
 tinygltf::Value number(std::int64_t value) { return tinygltf::Value(static_cast<int>(value)); }
@@ -212,14 +250,10 @@ tinygltf::Model model_of(const TileId& tile, const Attributes& attributes, Buffe
   tinygltf::Primitive primitive;
   primitive.mode = TINYGLTF_MODE_TRIANGLES;
   primitive.material = 0;
-  const int position = add_accessor(model, buffers.add_vertices(attributes.positions), vertices,
-                                    TINYGLTF_COMPONENT_TYPE_SHORT, TINYGLTF_TYPE_VEC3);
-  const int morph = add_accessor(model, buffers.add_vertices(attributes.morphs), vertices,
-                                 TINYGLTF_COMPONENT_TYPE_SHORT, TINYGLTF_TYPE_VEC3);
+  const int position = add_steps(model, buffers, attributes.positions);
+  const int morph = add_steps(model, buffers, attributes.morphs);
   const int normal = add_accessor(model, buffers.add_vertices(attributes.normals), vertices,
                                   TINYGLTF_COMPONENT_TYPE_BYTE, TINYGLTF_TYPE_VEC3);
-  set_bounds(model.accessors[position], attributes.positions);
-  set_bounds(model.accessors[morph], attributes.morphs);
   model.accessors[normal].normalized = true;
   primitive.indices = add_accessor(
       model, buffers.add_indices(attributes.indices, vertices, is_small ? 2 : 4),

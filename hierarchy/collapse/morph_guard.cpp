@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numeric>
 
 #include "hierarchy/collapse/star_fit.h"
@@ -45,13 +44,12 @@ FieldPoint blend(const Place& from, const Place& to, double t) {
 
 MorphGuard::MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
                        const std::vector<TerrainVertex>& coarser, const SampleField& field,
-                       double tolerance_m, std::int64_t reach)
+                       double tolerance_m)
     : finer_(std::move(finer)),
       triangles_(std::move(triangles)),
       coarser_(coarser),
       field_(field),
       tolerance_m_(tolerance_m),
-      reach_(reach),
       target_(finer_.size()),
       next_member_(finer_.size()),
       first_incident_(finer_.size() + 1, 0),
@@ -69,13 +67,6 @@ MorphGuard::MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
     for (const std::uint32_t v : triangles_[t]) incident_[free[v]++] = t;
   }
-}
-
-bool MorphGuard::is_in_reach(std::uint32_t fine, const Place& target) const {
-  const LatticePoint& a = finer_[fine].lattice;
-  const LatticePoint& b = target.lattice;
-  return std::abs(a.i - b.i) <= reach_ && std::abs(a.j - b.j) <= reach_ &&
-         std::abs(a.k - b.k) <= reach_;
 }
 
 bool MorphGuard::is_sound(const Corners& triangle, std::span<const VertexId> core,
@@ -105,7 +96,6 @@ bool MorphGuard::allows(std::span<const VertexId> core, const Place& target) {
     const auto first = static_cast<std::uint32_t>(corner);
     std::uint32_t fine = first;
     do {
-      if (!is_in_reach(fine, target)) return false;
       for (std::uint32_t i = first_incident_[fine]; i < first_incident_[fine + 1]; ++i) {
         const std::uint32_t t = incident_[i];
         if (std::exchange(checked_[t], stamp_) == stamp_) continue;

@@ -13,8 +13,8 @@ namespace terrane::hierarchy {
 ///
 /// Every vertex of the finer level moves on a straight line to the vertex of the coarser mesh that
 /// it was collapsed into. The guard knows these targets, and refuses a collapse after which a
-/// triangle of the finer level would turn over at some t < 1, leave the tolerance at t = 1/4, 1/2
-/// or 3/4, or move a vertex further than \p reach lattice steps.
+/// triangle of the finer level would turn over at some t < 1, or leave the tolerance at t = 1/4, 1/2
+/// or 3/4.
 class MorphGuard {
  public:
   /// \param finer      places of the finer level, one per vertex of the mesh to be collapsed.
@@ -22,7 +22,7 @@ class MorphGuard {
   /// \param coarser    the mesh's vertices; read at every call, so it must outlive the guard.
   MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
              const std::vector<TerrainVertex>& coarser, const SampleField& field,
-             double tolerance_m, std::int64_t reach);
+             double tolerance_m);
 
   /// May the vertices of \p core all go to \p target?
   bool allows(std::span<const VertexId> core, const Place& target);
@@ -34,7 +34,6 @@ class MorphGuard {
   VertexId target_of(std::uint32_t fine) const { return target_[fine]; }
 
  private:
-  bool is_in_reach(std::uint32_t fine, const Place& target) const;
   bool is_sound(const Corners& triangle, std::span<const VertexId> core, const Place& target) const;
 
   std::vector<Place> finer_;
@@ -42,7 +41,6 @@ class MorphGuard {
   const std::vector<TerrainVertex>& coarser_;
   const SampleField& field_;
   double tolerance_m_;
-  std::int64_t reach_;
 
   std::vector<VertexId> target_;
   std::vector<std::uint32_t> next_member_;  // members of a coarse vertex: a ring through itself

@@ -38,7 +38,7 @@ class StrictCollapse {
     }
     if (!finer.empty()) {
       guard_.emplace(split_like(mesh_, finer), mesh_.triangles(), vertices_, field,
-                     options.tolerance_m, options.reach);
+                     options.tolerance_m);
     } else {
       parent_.resize(vertices_.size());
       for (std::uint32_t v = 0; v < vertices_.size(); ++v) parent_[v] = VertexId{v};

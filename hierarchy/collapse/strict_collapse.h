@@ -16,8 +16,6 @@ struct StrictOptions {
   double tolerance_m = 1;
   /// Smallest altitude in plan of a new triangle, in cells: rounding must not turn it over.
   double smallest_altitude_cells = 0;
-  /// Furthest that a vertex of the finer level may move, in lattice steps on an axis.
-  std::int64_t reach = INT64_MAX;
 };
 
 /// What became of a mesh.

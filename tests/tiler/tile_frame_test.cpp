@@ -21,7 +21,7 @@ class GeographicTile : public ::testing::Test {
   const GeographicPlace place_{{8, 47}, 1.0 / 1200};
   const WorldFrame world_{place_, shape_};
   const Pyramid pyramid_{shape_, 64};
-  const Lattice lattice_{pyramid_, world_, {1, 300, 4500, ""}};
+  const Lattice lattice_{pyramid_, world_, {1, 300, 4500, ""}, 2};
   const TileFrame frame_{world_, lattice_, window_, 0};
 };
 
@@ -74,7 +74,7 @@ TEST(TileFrame, OfASouthUpGridIsMirrored) {
   for (const bool south_up : {false, true}) {
     const PlainPlace place(10, south_up ? -10 : 10);
     const WorldFrame world(place, shape);
-    const Lattice lattice(pyramid, world, {1, 0, 100, ""});
+    const Lattice lattice(pyramid, world, {1, 0, 100, ""}, 1);
     EXPECT_EQ(TileFrame(world, lattice, {0, 0, 65, 65}, 0).is_mirrored(), south_up);
   }
 }

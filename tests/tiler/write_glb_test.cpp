@@ -69,10 +69,24 @@ TEST(EncodeGlb, AccessorBoundsAreThoseOfThePositions) {
   EXPECT_EQ(position["max"], (std::vector<double>{5, 3, 5}));
 }
 
-TEST(EncodeGlb, RefusesADisplacementThatSixteenBitsCannotHold) {
+TEST(EncodeGlb, PositionsBeyondSixteenBitsAreFloats) {
+  constexpr int kShort = 5122, kFloat = 5126;
+  TileMesh mesh = square();
+  const auto type = [&](const char* name) {
+    const auto json = json_of(encode_glb({0, 0, 0}, mesh, mesh.points, {1, 1, 1}, false));
+    const auto& attributes = json["meshes"][0]["primitives"][0]["attributes"];
+    return json["accessors"][attributes[name].get<std::size_t>()]["componentType"];
+  };
+  EXPECT_EQ(type("POSITION"), kShort);
+  mesh.points[2].i += 70000;
+  EXPECT_EQ(type("POSITION"), kFloat);
+  EXPECT_EQ(type("_MORPH"), kShort);
+}
+
+TEST(EncodeGlb, RefusesADisplacementThatTwentyFourBitsCannotHold) {
   const TileMesh mesh = square();
   std::vector<LatticePoint> targets = mesh.points;
-  targets[2].i += 40000;
+  targets[2].i += 1 << 23;
   EXPECT_THROW(encode_glb({0, 0, 0}, mesh, targets, {1, 1, 1}, false), OutputError);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <meshoptimizer.h>
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -23,6 +24,7 @@ constexpr std::size_t kChunkHeaderBytes = 8;
 constexpr std::size_t kMostElements = std::size_t{1} << 28;  // a damaged count must not eat memory
 
 constexpr int kShort = 5122;
+constexpr int kFloat = 5126;
 constexpr int kUnsignedShort = 5123;
 constexpr int kUnsignedInt = 5125;
 
@@ -88,8 +90,9 @@ std::vector<unsigned char> Glb::decode_view(std::size_t index, std::size_t& stri
   if (view.at("buffer").get<int>() != 0 || offset > binary_size_ || size > binary_size_ - offset) {
     fail(fmt::format("buffer view {} reaches past the end", index));
   }
-  if (count > kMostElements || view.value("filter", "NONE") != "NONE") {
-    fail(fmt::format("buffer view {} has {} elements or a filter", index, count));
+  const auto filter = view.value("filter", "NONE");
+  if (count > kMostElements || (filter != "NONE" && filter != "EXPONENTIAL")) {
+    fail(fmt::format("buffer view {} has {} elements or the filter {}", index, count, filter));
   }
   const bool is_attributes =
       mode == "ATTRIBUTES" && stride >= 4 && stride <= 256 && stride % 4 == 0;
@@ -103,6 +106,7 @@ std::vector<unsigned char> Glb::decode_view(std::size_t index, std::size_t& stri
                          ? meshopt_decodeVertexBuffer(decoded.data(), count, stride, encoded, size)
                          : meshopt_decodeIndexBuffer(decoded.data(), count, stride, encoded, size);
   if (status != 0) fail(fmt::format("buffer view {} does not decompress", index));
+  if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(decoded.data(), count, stride);
   return decoded;
 }
 
@@ -121,17 +125,39 @@ Glb::View Glb::view_of(const json& accessor, std::size_t element_bytes) const {
   return view;
 }
 
-std::vector<Glb::ShortVector> Glb::short_vectors(const json& accessor_index) const {
+std::vector<Glb::Whole> Glb::whole_vectors(const json& accessor_index) const {
   const json& accessor = document_.at("accessors").at(accessor_index.get<std::size_t>());
-  if (accessor.at("componentType") != kShort || accessor.at("type") != "VEC3") {
-    fail("a vertex attribute is not SHORT VEC3");
+  const int type = accessor.at("componentType").get<int>();
+  if ((type != kShort && type != kFloat) || accessor.at("type") != "VEC3") {
+    fail("a vertex attribute is not SHORT or FLOAT VEC3");
   }
-  const View view = view_of(accessor, sizeof(ShortVector));
-  std::vector<ShortVector> vectors(accessor.at("count").get<std::size_t>());
+  const View view = view_of(accessor, type == kShort ? 6 : 12);
+  std::vector<Whole> vectors(accessor.at("count").get<std::size_t>());
   for (std::size_t i = 0; i < vectors.size(); ++i) {
-    std::memcpy(vectors[i].data(), view.bytes.data() + i * view.stride, sizeof(ShortVector));
+    const unsigned char* element = view.bytes.data() + i * view.stride;
+    vectors[i] = type == kShort ? whole_of_shorts(element) : whole_of_floats(element);
   }
   return vectors;
+}
+
+Glb::Whole Glb::whole_of_shorts(const unsigned char* element) const {
+  std::array<std::int16_t, 3> values;
+  std::memcpy(values.data(), element, sizeof(values));
+  return {values[0], values[1], values[2]};
+}
+
+Glb::Whole Glb::whole_of_floats(const unsigned char* element) const {
+  std::array<float, 3> values;
+  std::memcpy(values.data(), element, sizeof(values));
+  Whole whole;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    constexpr float kMostWhole = 1 << 24;  // above, a float skips integers
+    if (!(std::abs(values[axis]) < kMostWhole) || std::trunc(values[axis]) != values[axis]) {
+      fail(fmt::format("a vertex attribute is {}, no whole number below 2^24", values[axis]));
+    }
+    whole[axis] = static_cast<std::int32_t>(values[axis]);
+  }
+  return whole;
 }
 
 std::vector<std::uint32_t> Glb::indices(const json& accessor_index) const {

@@ -14,7 +14,7 @@ namespace terrane::verify {
 /// InputError that names the file.
 class Glb {
  public:
-  using ShortVector = std::array<std::int16_t, 3>;
+  using Whole = std::array<std::int32_t, 3>;
 
   /// \throws InputError if the file is missing, cut off or no binary glTF.
   static Glb read(const std::filesystem::path& file);
@@ -22,8 +22,8 @@ class Glb {
   const nlohmann::json& document() const { return document_; }
   std::int64_t bytes() const { return static_cast<std::int64_t>(content_.size()); }
 
-  /// Elements of a SHORT VEC3 accessor.
-  std::vector<ShortVector> short_vectors(const nlohmann::json& accessor_index) const;
+  /// Elements of a VEC3 accessor of whole numbers, stored as SHORT or as FLOAT.
+  std::vector<Whole> whole_vectors(const nlohmann::json& accessor_index) const;
 
   /// Elements of an UNSIGNED SHORT or UNSIGNED INT scalar accessor.
   std::vector<std::uint32_t> indices(const nlohmann::json& accessor_index) const;
@@ -37,6 +37,8 @@ class Glb {
     std::size_t stride = 0;
   };
 
+  Whole whole_of_shorts(const unsigned char* element) const;
+  Whole whole_of_floats(const unsigned char* element) const;
   std::vector<unsigned char> decode_view(std::size_t index, std::size_t& stride) const;
   View view_of(const nlohmann::json& accessor, std::size_t element_bytes) const;
   void split_chunks();

@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 
 /// glTF is y up: (i, k, -j) back to (i, j, k).
-Lattice from_y_up(const Glb::ShortVector& stored) { return {stored[0], -stored[2], stored[1]}; }
+Lattice from_y_up(const Glb::Whole& stored) { return {stored[0], -stored[2], stored[1]}; }
 
 bool agree(const json& numbers, const std::array<double, 3>& expected) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -52,18 +52,18 @@ void check_extras(const json& extras, TileMesh& mesh) {
 }
 
 /// Clients cull by min and max; a wrong one makes a tile vanish.
-void check_bounds(const json& accessor, const std::vector<Glb::ShortVector>& values,
+void check_bounds(const json& accessor, const std::vector<Glb::Whole>& values,
                   TileMesh& mesh) {
-  Glb::ShortVector least = values.front();
-  Glb::ShortVector most = values.front();
+  Glb::Whole least = values.front();
+  Glb::Whole most = values.front();
   for (const auto& value : values) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       least[axis] = std::min(least[axis], value[axis]);
       most[axis] = std::max(most[axis], value[axis]);
     }
   }
-  if (accessor.at("min").get<Glb::ShortVector>() != least ||
-      accessor.at("max").get<Glb::ShortVector>() != most) {
+  if (accessor.at("min").get<Glb::Whole>() != least ||
+      accessor.at("max").get<Glb::Whole>() != most) {
     mesh.misstated.push_back("min and max of POSITION are not those of its vertices");
   }
 }
@@ -92,8 +92,8 @@ void take_triangles(const Glb& glb, const std::vector<std::uint32_t>& indices, T
 
 void take_vertices(const Glb& glb, const json& primitive, const Lattice& origin, TileMesh& mesh) {
   const json& attributes = primitive.at("attributes");
-  const auto positions = glb.short_vectors(attributes.at("POSITION"));
-  const auto morphs = glb.short_vectors(attributes.at("_MORPH"));
+  const auto positions = glb.whole_vectors(attributes.at("POSITION"));
+  const auto morphs = glb.whole_vectors(attributes.at("_MORPH"));
   if (positions.empty()) glb.fail("no vertices");
   if (positions.size() != morphs.size()) glb.fail("POSITION and _MORPH differ in length");
   for (std::size_t v = 0; v < positions.size(); ++v) {

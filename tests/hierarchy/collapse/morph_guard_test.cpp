@@ -25,8 +25,8 @@ class FlatGuard : public ::testing::Test {
     for (const TerrainVertex& vertex : mesh_.vertices) finer_.push_back(vertex.place);
   }
 
-  MorphGuard guard(std::int64_t reach = INT64_MAX) const {
-    return MorphGuard(finer_, mesh_.triangles, mesh_.vertices, field_, 1, reach);
+  MorphGuard guard() const {
+    return MorphGuard(finer_, mesh_.triangles, mesh_.vertices, field_, 1);
   }
 
   HeightGrid grid_;
@@ -47,11 +47,6 @@ TEST_F(FlatGuard, RefusesToLeaveTheToleranceHalfWay) {
   // 1.9 m up: within 1 m at t = 1/2 only just, and over it at 3/4
   EXPECT_FALSE(guard().allows(std::array{VertexId{12}}, cell(2, 2, 1.9)));
   EXPECT_TRUE(guard().allows(std::array{VertexId{12}}, cell(2, 2, 1.3)));
-}
-
-TEST_F(FlatGuard, RefusesAMoveBeyondItsReach) {
-  EXPECT_FALSE(guard(kUnitsPerCell / 4).allows(std::array{VertexId{12}}, cell(2.5, 2, 0)));
-  EXPECT_TRUE(guard(kUnitsPerCell).allows(std::array{VertexId{12}}, cell(2.5, 2, 0)));
 }
 
 TEST_F(FlatGuard, MembersFollowTheVertexTheyWereJoinedTo) {

@@ -7,12 +7,15 @@ import type {Level, Tile} from '../core/tileset';
 import type {Vec3} from '../core/vec3';
 import {terrainMaterial, type SharedUniforms} from './terrain_material';
 
+/** Whole numbers: 16 bits where they fit, else floats. */
+type Steps = Int16Array | Float32Array;
+
 /** A tile that is loaded: its integers, and the mesh to draw. */
 export interface TileContent extends TileVertices {
   readonly bytes: number;
   readonly triangles: number;
-  readonly positions: Int16Array;
-  readonly toTargets: Int16Array;
+  readonly positions: Steps;
+  readonly toTargets: Steps;
   readonly normals: Int8Array;
   readonly indices: Uint16Array | Uint32Array;
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
@@ -44,9 +47,9 @@ export class TileLoader {
       if (!found) throw new Error(`${tile.url}: no attribute ${name}`);
       return found;
     };
-    const positions = Int16Array.from(triples(attribute('position')));
-    const toTargets = Int16Array.from(triples(attribute('_morph')));
-    const normals = Int8Array.from(triples(attribute('normal')));
+    const positions = steps(attribute('position'));
+    const toTargets = steps(attribute('_morph'));
+    const normals = triples(attribute('normal'), new Int8Array(3 * attribute('normal').count));
     const indices = source.index!.array as Uint16Array | Uint32Array;
     const mesh = this.mesh(tile, positions, toTargets, normals, indices);
     // what the arrays take here and on the card, target normals included
@@ -58,8 +61,8 @@ export class TileLoader {
 
   private mesh(
     tile: Tile,
-    positions: Int16Array,
-    toTargets: Int16Array,
+    positions: Steps,
+    toTargets: Steps,
     normals: Int8Array,
     indices: Uint16Array | Uint32Array,
   ) {
@@ -91,13 +94,24 @@ export function disposeContent(content: TileContent): void {
   content.mesh.material.dispose();
 }
 
-/** The stored integers of an attribute of three components, without gaps. */
-function triples(attribute: BufferAttribute | InterleavedBufferAttribute): Int16Array {
+function steps(attribute: BufferAttribute | InterleavedBufferAttribute): Steps {
+  const stored = 'data' in attribute ? attribute.data.array : attribute.array;
+  const size = 3 * attribute.count;
+  return triples(
+    attribute,
+    stored instanceof Int16Array ? new Int16Array(size) : new Float32Array(size),
+  );
+}
+
+/** Copies the stored numbers of an attribute of three components, without gaps. */
+function triples<T extends Int8Array | Int16Array | Float32Array>(
+  attribute: BufferAttribute | InterleavedBufferAttribute,
+  packed: T,
+): T {
   const interleaved = 'data' in attribute;
   const stored = interleaved ? attribute.data.array : attribute.array;
   const stride = interleaved ? attribute.data.stride : attribute.itemSize;
   const offset = interleaved ? attribute.offset : 0;
-  const packed = new Int16Array(3 * attribute.count);
   for (let i = 0; i < attribute.count; ++i) {
     for (let k = 0; k < 3; ++k) packed[3 * i + k] = stored[i * stride + offset + k]!;
   }
