@@ -1,5 +1,6 @@
 #include "tiler/build_tile.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -28,13 +29,23 @@ using hierarchy::VertexKind;
 // ends of an altitude together by 2.9 steps of this level
 constexpr double kSmallestAltitudeSteps = 4;
 
+hierarchy::FieldPoint plan_of(const Place& place) {
+  return {hierarchy::column_of(place.plan), hierarchy::row_of(place.plan), 0};
+}
+
+hierarchy::FieldPoint blend(const hierarchy::FieldPoint& a, const hierarchy::FieldPoint& b,
+                            double t) {
+  return {a.column + t * (b.column - a.column), a.row + t * (b.row - a.row), 0};
+}
+
 /// Edges with a triangle on one side only: both their ends are samples.
-std::vector<Edge> rim_of(const TileMesh& mesh) {
+std::vector<Edge> rim_of(const TerrainMesh& mesh) {
   std::set<Edge> open;
   for (const Corners& corners : mesh.triangles) {
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t from = corners[k], to = corners[(k + 1) % 3];
-      if (mesh.samples[from].column < 0 || mesh.samples[to].column < 0) continue;
+      const auto is_inside = [&](std::uint32_t v) { return mesh.vertices[v].sample.column < 0; };
+      if (is_inside(from) || is_inside(to)) continue;
       if (open.erase({to, from}) == 0) open.insert({from, to});
     }
   }
@@ -85,9 +96,11 @@ class TileBuild {
   }
 
   /// Collapses and measures; again with a smaller tolerance while the world says it is too much.
-  std::pair<TileMesh, std::vector<LatticePoint>> finish(const TerrainMesh& input,
-                                                        const std::vector<Place>& finer,
-                                                        double tolerance_m) const {
+  ///
+  /// \param finer  places of the finer level and, at finer_points, as they are written there.
+  std::pair<TileMesh, std::vector<LatticePoint>> finish(
+      const TerrainMesh& input, const std::vector<Place>& finer,
+      const std::vector<LatticePoint>& finer_points, double tolerance_m) const {
     // the grid frame's straight lines are not quite the world's: 0.1 % saves most second tries
     StrictOptions options{.tolerance_m = 0.999 * tolerance_m};
     options.smallest_altitude_cells =
@@ -98,9 +111,12 @@ class TileBuild {
       const StrictResult result =
           hierarchy::collapse_strictly(input, field_, frame_, finer, options);
       TileMesh mesh = written_mesh(result.mesh);
-      if (mesh.error.max_m <= tolerance_m) return {std::move(mesh), targets(result)};
-      if (tries == kMostTries) refuse(mesh.error.max_m, tolerance_m);
-      options.tolerance_m *= std::min(0.95, 0.99 * tolerance_m / mesh.error.max_m);
+      const double worst_m =
+          std::max(mesh.error.max_m, blend_error_m(input, finer, finer_points, result));
+      if (worst_m <= tolerance_m) return {std::move(mesh), targets(result)};
+      if (tries == kMostTries) refuse(worst_m, tolerance_m);
+      // gently at first: most are over by a thousandth
+      options.tolerance_m *= std::min(1 - 0.005 * (1 << tries), 0.999 * tolerance_m / worst_m);
     }
   }
 
@@ -121,17 +137,47 @@ class TileBuild {
   TileMesh written_mesh(const TerrainMesh& terrain) const {
     TileMesh mesh;
     std::vector<Place> places;
+    std::vector<WorldVertex> vertices;
     for (const TerrainVertex& vertex : terrain.vertices) {
       mesh.points.push_back(vertex.place.lattice);
       mesh.samples.push_back(vertex.sample);
       places.push_back(vertex.place);
+      vertices.push_back({plan_of(vertex.place), world_of(vertex.place)});
     }
     mesh.triangles = terrain.triangles;
-    const std::vector<Edge> rim = rim_of(mesh);
     mesh.normals = terrain_normals(places, frame_, tile_.level, grid_, window_);
-    mesh.error = measure(places, mesh.triangles, rim, frame_, source_.lattice, tile_.level,
-                         grid_, window_);
+    mesh.error = measured(vertices, mesh.triangles, rim_of(terrain));
     return mesh;
+  }
+
+  /// The largest error of the finer level on its way to the result.
+  double blend_error_m(const TerrainMesh& input, const std::vector<Place>& finer,
+                       const std::vector<LatticePoint>& finer_points,
+                       const StrictResult& result) const {
+    if (finer.empty()) return 0;
+    const std::vector<Edge> rim = rim_of(input);
+    double worst_m = 0;
+    for (const double t : {0.25, 0.5, 0.75}) {
+      std::vector<WorldVertex> vertices;
+      for (std::size_t v = 0; v < finer.size(); ++v) {
+        const Place& target = result.mesh.vertices[result.target[v]].place;
+        const Eigen::Vector3d from = source_.lattice.world(finer_points[v], tile_.level - 1);
+        vertices.push_back({blend(plan_of(finer[v]), plan_of(target), t),
+                            from + t * (world_of(target) - from)});
+      }
+      worst_m = std::max(worst_m, measured(vertices, input.triangles, rim).max_m);
+    }
+    return worst_m;
+  }
+
+  MeasuredError measured(std::span<const WorldVertex> vertices, std::span<const Corners> triangles,
+                         std::span<const Edge> rim) const {
+    return measure(vertices, triangles, rim, frame_, source_.lattice.step_m(tile_.level).x(),
+                   grid_, window_);
+  }
+
+  Eigen::Vector3d world_of(const Place& place) const {
+    return source_.lattice.world(place.lattice, tile_.level);
   }
 
   static std::vector<LatticePoint> targets(const StrictResult& result) {
@@ -226,7 +272,7 @@ BuiltTile build_leaf(const TileSource& source, const TileId& tile, double tolera
     set_kind(mesh.vertices.back(), boundary[v], full.vertices[v], source.pyramid, tile);
   }
   build.fix_rim(mesh);
-  return {build.finish(mesh, {}, tolerance_m).first, {}};
+  return {build.finish(mesh, {}, {}, tolerance_m).first, {}};
 }
 
 BuiltTile build_parent(const TileSource& source, const TileId& tile,
@@ -247,7 +293,7 @@ BuiltTile build_parent(const TileSource& source, const TileId& tile,
   }
   build.fix_rim(mesh);
 
-  auto [own, targets] = build.finish(mesh, finer, tolerance_m);
+  auto [own, targets] = build.finish(mesh, finer, joined.points, tolerance_m);
   result.mesh = std::move(own);
   for (std::size_t c = 0; c < children.size(); ++c) {
     for (const std::uint32_t v : joined.number[c]) {

@@ -11,34 +11,27 @@ namespace terrane::tiler {
 namespace {
 
 using hierarchy::FieldPoint;
-using hierarchy::Place;
-
-FieldPoint field_point(const Place& place) {
-  return {hierarchy::column_of(place.plan), hierarchy::row_of(place.plan), 0};
-}
 
 // in cells, and as a share of a triangle
 constexpr double kOnEdge = 1e-7;
 
 class Measurement {
  public:
-  Measurement(const TileFrame& frame, const Lattice& lattice, int level, const HeightGrid& grid,
-              const Window& window)
+  Measurement(const TileFrame& frame, double step_m, const HeightGrid& grid, const Window& window)
       : frame_(frame),
-        lattice_(lattice),
-        level_(level),
+        step_m_(step_m),
         grid_(grid),
         window_(window),
         extent_{window.columns, window.rows, {}},
         worst_m_(static_cast<std::size_t>(window.columns * window.rows), kUnmeasured) {}
 
-  void add_triangle(const Place& a, const Place& b, const Place& c) {
+  void add_triangle(const WorldVertex& a, const WorldVertex& b, const WorldVertex& c) {
     // as a ray along the plumb line meets a triangle (Moeller and Trumbore 1997)
-    const Eigen::Vector3d corner = world(a);
-    const Eigen::Vector3d side_b = world(b) - corner, side_c = world(c) - corner;
+    const Eigen::Vector3d corner = a.world;
+    const Eigen::Vector3d side_b = b.world - corner, side_c = c.world - corner;
     const double slack_cells = kOnEdge + std::max({bend_cells(a, b), bend_cells(b, c),
                                                    bend_cells(c, a)});
-    for_each_span(field_point(a), field_point(b), field_point(c), extent_, slack_cells,
+    for_each_span(a.plan, b.plan, c.plan, extent_, slack_cells,
                   [&](std::int64_t row, std::int64_t first, std::int64_t last) {
                     for (std::int64_t column = first; column <= last; ++column) {
                       const Plumb plumb = plumb_at(column, row);
@@ -55,9 +48,9 @@ class Measurement {
   }
 
   /// Measures what no triangle covers, but lies within a step of the edge.
-  void add_rim(const Place& a, const Place& b) {
-    const FieldPoint from = field_point(a), to = field_point(b);
-    const double reach = lattice_.step_m(level_).x() / frame_.spacing_m();
+  void add_rim(const WorldVertex& a, const WorldVertex& b) {
+    const FieldPoint from = a.plan, to = b.plan;
+    const double reach = step_m_ / frame_.spacing_m();
     const auto first_column = std::ceil(std::min(from.column, to.column) - reach);
     const auto last_column = std::floor(std::max(from.column, to.column) + reach);
     const auto first_row = std::ceil(std::min(from.row, to.row) - reach);
@@ -88,8 +81,6 @@ class Measurement {
  private:
   static constexpr double kUnmeasured = -1;
 
-  Eigen::Vector3d world(const Place& place) const { return lattice_.world(place.lattice, level_); }
-
   Plumb plumb_at(std::int64_t column, std::int64_t row) const {
     return frame_.plumb(static_cast<double>(column), static_cast<double>(row));
   }
@@ -99,8 +90,8 @@ class Measurement {
   }
 
   /// How far the straight edge in the world lies beside the straight line over the grid, about.
-  double bend_cells(const Place& a, const Place& b) const {
-    const FieldPoint from = field_point(a), to = field_point(b);
+  double bend_cells(const WorldVertex& a, const WorldVertex& b) const {
+    const FieldPoint from = a.plan, to = b.plan;
     const auto base = [&](double t) -> Eigen::Vector3d {
       return frame_
           .plumb(from.column + t * (to.column - from.column), from.row + t * (to.row - from.row))
@@ -119,23 +110,22 @@ class Measurement {
     worst_m(column, row) = std::max(worst_m(column, row), std::abs(on_mesh_m - height_m));
   }
 
-  void add_near_rim(std::int64_t column, std::int64_t row, const Place& a, const Place& b) {
+  void add_near_rim(std::int64_t column, std::int64_t row, const WorldVertex& a, const WorldVertex& b) {
     if (worst_m(column, row) != kUnmeasured) return;
     const Plumb plumb = plumb_at(column, row);
     const auto flat = [&](const Eigen::Vector3d& v) -> Eigen::Vector3d {
       return v - v.dot(plumb.up) * plumb.up;
     };
-    const Eigen::Vector3d from = world(a), along = world(b) - from;
+    const Eigen::Vector3d from = a.world, along = b.world - from;
     const double length2 = std::max(flat(along).squaredNorm(), 1e-30);
     const double t = std::clamp(flat(plumb.base - from).dot(flat(along)) / length2, 0.0, 1.0);
     const Eigen::Vector3d nearest = from + t * along;
-    if (flat(nearest - plumb.base).norm() > lattice_.step_m(level_).x()) return;
+    if (flat(nearest - plumb.base).norm() > step_m_) return;
     add(column, row, (nearest - plumb.base).dot(plumb.up));
   }
 
   const TileFrame& frame_;
-  const Lattice& lattice_;
-  int level_;
+  double step_m_;
   const HeightGrid& grid_;
   const Window& window_;
   hierarchy::SampleField extent_;
@@ -144,15 +134,15 @@ class Measurement {
 
 }  // namespace
 
-MeasuredError measure(std::span<const Place> places,
+MeasuredError measure(std::span<const WorldVertex> vertices,
                       std::span<const hierarchy::Corners> triangles, std::span<const Edge> rim,
-                      const TileFrame& frame, const Lattice& lattice, int level,
-                      const HeightGrid& grid, const Window& window) {
-  Measurement measurement(frame, lattice, level, grid, window);
+                      const TileFrame& frame, double step_m, const HeightGrid& grid,
+                      const Window& window) {
+  Measurement measurement(frame, step_m, grid, window);
   for (const auto& [a, b, c] : triangles) {
-    measurement.add_triangle(places[a], places[b], places[c]);
+    measurement.add_triangle(vertices[a], vertices[b], vertices[c]);
   }
-  for (const auto& [a, b] : rim) measurement.add_rim(places[a], places[b]);
+  for (const auto& [a, b] : rim) measurement.add_rim(vertices[a], vertices[b]);
   return measurement.result();
 }
 
