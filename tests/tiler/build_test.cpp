@@ -150,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(
                 [](auto c, auto r) { return c / 3 % 2 == r / 3 % 2 && c % 3 && r % 3 ? NAN : 5.0; }},
         Awkward{"SlantedRim", {50, 50},
                 [](auto c, auto r) { return r < c / 9 || c < r / 7 ? NAN : hills(c, r); }}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 class RandomDem : public ::testing::TestWithParam<unsigned> {};
 
