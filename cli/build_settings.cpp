@@ -1,11 +1,11 @@
 #include "cli/build_settings.h"
 
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
 #include <functional>
 #include <map>
 #include <sstream>
-
-#include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include "core/errors.h"
 #include "tiler/whole_file.h"
@@ -20,8 +20,8 @@ struct Setting {
   const toml::node& node;
 
   [[noreturn]] void refuse(std::string_view wanted) const {
-    throw ConfigError(fmt::format("{}:{}: {} must be {}", file.string(), node.source().begin.line,
-                                  key, wanted));
+    throw ConfigError(
+        fmt::format("{}:{}: {} must be {}", file.string(), node.source().begin.line, key, wanted));
   }
 
   template <class T>
@@ -63,7 +63,8 @@ using Reader = std::function<void(const Setting&, BuildSettings&)>;
 const std::map<std::string, Reader>& readers() {
   static const std::map<std::string, Reader> known = {
       {"ingest.dem", [](const Setting& s, BuildSettings& to) { to.dem = s.texts(); }},
-      {"ingest.band", [](const Setting& s, BuildSettings& to) { to.ingest.band = s.whole_number(); }},
+      {"ingest.band",
+       [](const Setting& s, BuildSettings& to) { to.ingest.band = s.whole_number(); }},
       {"ingest.nodata",
        [](const Setting& s, BuildSettings& to) { to.ingest.nodata = s.number_or_text(); }},
       {"ingest.vertical_unit",
@@ -115,8 +116,8 @@ std::string repeatable(const std::string& source) {
 ingest::VerticalUnit vertical_unit_of(const std::string& word) {
   const auto unit = ingest::parse_vertical_unit(word);
   if (unit) return *unit;
-  throw ConfigError(fmt::format(
-      "--vertical-unit {}: is not known. Use metre, foot or us-survey-foot", word));
+  throw ConfigError(
+      fmt::format("--vertical-unit {}: is not known. Use metre, foot or us-survey-foot", word));
 }
 
 void read_settings(const std::filesystem::path& file, BuildSettings& settings) {
@@ -125,8 +126,8 @@ void read_settings(const std::filesystem::path& file, BuildSettings& settings) {
   try {
     table = toml::parse(text);
   } catch (const toml::parse_error& error) {
-    throw ConfigError(fmt::format("{}:{}: {}", file.string(), error.source().begin.line,
-                                  error.description()));
+    throw ConfigError(
+        fmt::format("{}:{}: {}", file.string(), error.source().begin.line, error.description()));
   }
   for (const auto& [section, content] : table) {
     const std::string name(section.str());
@@ -141,7 +142,8 @@ void read_settings(const std::filesystem::path& file, BuildSettings& settings) {
 }
 
 std::string to_toml(const BuildSettings& settings) {
-  std::string text = "# Written by terrane build. Repeat with: terrane build --config THIS -o OUT\n";
+  std::string text =
+      "# Written by terrane build. Repeat with: terrane build --config THIS -o OUT\n";
   text += "[ingest]\ndem = [";
   for (std::size_t i = 0; i < settings.dem.size(); ++i) {
     text += (i > 0 ? ", " : "") + quoted(repeatable(settings.dem[i]));

@@ -1,10 +1,9 @@
-#include <cstdio>
-#include <filesystem>
-#include <memory>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdio>
+#include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/build_settings.h"
@@ -33,12 +32,11 @@ void describe_output(const std::filesystem::path& out) {
   const auto& dem = json.at("dem");
   print_row("output", out.string());
   print_row("written by", json.at("generator").get<std::string>());
-  print_row("DEM", fmt::format("{} x {} samples, {} with data, {:.2f} to {:.2f} m",
-                               dem.at("columns").get<std::int64_t>(),
-                               dem.at("rows").get<std::int64_t>(),
-                               dem.at("samples_with_data").get<std::int64_t>(),
-                               dem.at("min_height_m").get<double>(),
-                               dem.at("max_height_m").get<double>()));
+  print_row("DEM", fmt::format(
+                       "{} x {} samples, {} with data, {:.2f} to {:.2f} m",
+                       dem.at("columns").get<std::int64_t>(), dem.at("rows").get<std::int64_t>(),
+                       dem.at("samples_with_data").get<std::int64_t>(),
+                       dem.at("min_height_m").get<double>(), dem.at("max_height_m").get<double>()));
   fmt::print("\n{:>5} {:>12} {:>12} {:>12} {:>7} {:>10} {:>9}\n", "level", "tolerance m",
              "max error m", "rms error m", "tiles", "triangles", "MB");
   for (const auto& level : json.at("levels")) {
@@ -68,16 +66,17 @@ void describe_dem(const InfoCommand& command, const CommonOptions& common) {
   print_row("CRS", about.crs_name.empty() ? "none: local metres" : about.crs_name);
   if (!about.datum_shift.empty()) print_row("to WGS84", about.datum_shift);
   print_row("band", fmt::format("{} of {}, {}", about.band, about.band_count, about.data_type));
-  print_row("heights in", fmt::format("{} (from {})", name_of(about.vertical_unit),
-                                      about.vertical_unit_origin));
-  print_row("no data", about.nodata_origin.empty()
-                           ? "not declared"
-                           : fmt::format("{} (from {})", fmt::join(about.nodata, ", "),
-                                         about.nodata_origin));
-  print_row("with data", fmt::format("{} samples, {:.2f} %", heights.samples_with_data,
-                                     100 * static_cast<double>(heights.samples_with_data) / samples));
-  print_row("heights", fmt::format("{:.2f} to {:.2f} m", heights.min_height_m,
-                                   heights.max_height_m));
+  print_row("heights in",
+            fmt::format("{} (from {})", name_of(about.vertical_unit), about.vertical_unit_origin));
+  print_row("no data",
+            about.nodata_origin.empty()
+                ? "not declared"
+                : fmt::format("{} (from {})", fmt::join(about.nodata, ", "), about.nodata_origin));
+  print_row("with data",
+            fmt::format("{} samples, {:.2f} %", heights.samples_with_data,
+                        100 * static_cast<double>(heights.samples_with_data) / samples));
+  print_row("heights",
+            fmt::format("{:.2f} to {:.2f} m", heights.min_height_m, heights.max_height_m));
 }
 
 void run(const InfoCommand& command, const CommonOptions& common) {

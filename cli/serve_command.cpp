@@ -1,9 +1,9 @@
+#include <fmt/format.h>
+
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <thread>
-
-#include <fmt/format.h>
 
 #include "cli/commands.h"
 #include "viewer/server/serve.h"

@@ -1,5 +1,6 @@
 #include "cli/terminal_progress.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -7,8 +8,6 @@
 #include <cstdio>
 #include <mutex>
 #include <string>
-
-#include <fmt/format.h>
 
 namespace terrane::cli {
 namespace {

@@ -1,9 +1,8 @@
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include "cli/build_settings.h"
@@ -36,10 +35,11 @@ void check_same_dem(const std::filesystem::path& out, const ingest::Dem& dem, Pr
   const auto summary = nlohmann::json::parse(tiler::read_whole_file(out / "terrane.json"));
   const auto built_from = summary.at("dem").at("fingerprint").get<std::string>();
   if (ingest::scan_heights(dem, progress).fingerprint == built_from) return;
-  throw InputError(fmt::format(
-      "{}: was not built from {}, or that has changed since. Name the right DEM with --dem, or build "
-      "again",
-      out.string(), dem.name()));
+  throw InputError(
+      fmt::format("{}: was not built from {}, or that has changed since. Name the right DEM with "
+                  "--dem, or build "
+                  "again",
+                  out.string(), dem.name()));
 }
 
 void run(const VerifyCommand& command, const CommonOptions& common) {
@@ -51,8 +51,8 @@ void run(const VerifyCommand& command, const CommonOptions& common) {
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, *progress);
   check_same_dem(command.out, *dem, *progress);
 
-  const verify::VerifyReport report = verify::verify(command.out, dem->heights(), dem->place(),
-                                                     {.jobs = command.jobs}, *progress);
+  const verify::VerifyReport report =
+      verify::verify(command.out, dem->heights(), dem->place(), {.jobs = command.jobs}, *progress);
   if (!command.json.empty()) tiler::write_whole_file(command.json, to_json(report));
   fmt::print("{}", to_text(report));
   if (!report.holds()) throw AnswerIsNo();

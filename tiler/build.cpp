@@ -1,12 +1,12 @@
 #include "tiler/build.h"
 
-#include <algorithm>
-#include <thread>
-
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <tbb/parallel_for_each.h>
 #include <tbb/task_arena.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <thread>
 
 #include "core/errors.h"
 #include "tiler/build_tile.h"
@@ -182,8 +182,8 @@ class Build {
 
 void check(const BuildOptions& options) {
   if (!(options.tolerance_m > 0) || !std::isfinite(options.tolerance_m)) {
-    throw ConfigError(fmt::format("--tolerance {}: must be a number of metres above 0",
-                                  options.tolerance_m));
+    throw ConfigError(
+        fmt::format("--tolerance {}: must be a number of metres above 0", options.tolerance_m));
   }
   if (options.tile_cells < 4 || options.tile_cells > 1024) {
     throw ConfigError(fmt::format("--tile-cells {}: must be from 4 to 1024", options.tile_cells));

@@ -28,7 +28,7 @@ struct BuildResult {
   std::int64_t tiles = 0;
   std::int64_t triangles = 0;  ///< of level 0
   std::int64_t bytes = 0;
-  double max_error_m = 0;      ///< of level 0
+  double max_error_m = 0;  ///< of level 0
 };
 
 /// Builds the tiles of a DEM into a folder, level by level, as docs/formats.md describes.

@@ -1,10 +1,10 @@
 #include "tiler/build_tile.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
-
-#include <fmt/format.h>
 
 #include "core/errors.h"
 #include "hierarchy/collapse/strict_collapse.h"
@@ -25,8 +25,8 @@ using hierarchy::TerrainMesh;
 using hierarchy::TerrainVertex;
 using hierarchy::VertexKind;
 
-// where the next level's steps are twice as wide, rounding moves a vertex by up to 0.71 of them: both
-// ends of an altitude together by 2.9 steps of this level
+// where the next level's steps are twice as wide, rounding moves a vertex by up to 0.71 of them:
+// both ends of an altitude together by 2.9 steps of this level
 constexpr double kSmallestAltitudeSteps = 4;
 
 hierarchy::FieldPoint plan_of(const Place& place) {
@@ -84,14 +84,14 @@ class TileBuild {
     for (TerrainVertex& vertex : mesh.vertices) {
       if (vertex.kind == VertexKind::kInterior) continue;
       rim.push_back(&vertex);
-      positions.push_back({static_cast<double>(vertex.sample.column),
-                           static_cast<double>(vertex.sample.row)});
+      positions.push_back(
+          {static_cast<double>(vertex.sample.column), static_cast<double>(vertex.sample.row)});
     }
     const std::vector<Plumb> plumbs = source_.world.plumbs(positions);
     for (std::size_t i = 0; i < rim.size(); ++i) {
       const double height_m = grid_.at(rim[i]->sample.column, rim[i]->sample.row);
-      rim[i]->place = frame_.place_of(source_.lattice.nearest(
-          plumbs[i].base + height_m * plumbs[i].up, tile_.level));
+      rim[i]->place = frame_.place_of(
+          source_.lattice.nearest(plumbs[i].base + height_m * plumbs[i].up, tile_.level));
     }
   }
 
@@ -162,8 +162,8 @@ class TileBuild {
       for (std::size_t v = 0; v < finer.size(); ++v) {
         const Place& target = result.mesh.vertices[result.target[v]].place;
         const Eigen::Vector3d from = source_.lattice.world(finer_points[v], tile_.level - 1);
-        vertices.push_back({blend(plan_of(finer[v]), plan_of(target), t),
-                            from + t * (world_of(target) - from)});
+        vertices.push_back(
+            {blend(plan_of(finer[v]), plan_of(target), t), from + t * (world_of(target) - from)});
       }
       worst_m = std::max(worst_m, measured(vertices, input.triangles, rim).max_m);
     }
@@ -172,8 +172,8 @@ class TileBuild {
 
   MeasuredError measured(std::span<const WorldVertex> vertices, std::span<const Corners> triangles,
                          std::span<const Edge> rim) const {
-    return measure(vertices, triangles, rim, frame_, source_.lattice.step_m(tile_.level).x(),
-                   grid_, window_);
+    return measure(vertices, triangles, rim, frame_, source_.lattice.step_m(tile_.level).x(), grid_,
+                   window_);
   }
 
   Eigen::Vector3d world_of(const Place& place) const {
@@ -191,7 +191,8 @@ class TileBuild {
   [[noreturn]] void refuse(double measured_m, double tolerance_m) const {
     throw ConfigError(fmt::format(
         "tile {}: is {:.3g} m from the DEM where {:.3g} m is asked for, as its positions are "
-        "rounded to {:.3g} m in plan and {:.3g} m in height. Use a larger --tolerance, or a smaller "
+        "rounded to {:.3g} m in plan and {:.3g} m in height. Use a larger --tolerance, or a "
+        "smaller "
         "--tile-cells",
         path_of(tile_), measured_m, tolerance_m, source_.lattice.step_m(tile_.level).x(),
         source_.lattice.step_m(tile_.level).z()));

@@ -15,8 +15,9 @@ Eigen::Vector3d extent(const Pyramid& pyramid, const WorldFrame& world, const Ti
   std::vector<GridPosition> probes;
   for (const double u : {0.0, 0.5, 1.0}) {
     for (const double v : {0.0, 0.5, 1.0}) {
-      probes.push_back({static_cast<double>(window.column) + u * static_cast<double>(window.columns - 1),
-                        static_cast<double>(window.row) + v * static_cast<double>(window.rows - 1)});
+      probes.push_back(
+          {static_cast<double>(window.column) + u * static_cast<double>(window.columns - 1),
+           static_cast<double>(window.row) + v * static_cast<double>(window.rows - 1)});
     }
   }
   Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY);
@@ -52,8 +53,8 @@ std::int64_t halve_up(std::int64_t value, std::int64_t ratio) {
 
 }  // namespace
 
-Lattice::Lattice(const Pyramid& pyramid, const WorldFrame& world,
-                 const HeightStatistics& heights, double tolerance_m) {
+Lattice::Lattice(const Pyramid& pyramid, const WorldFrame& world, const HeightStatistics& heights,
+                 double tolerance_m) {
   for (int level = 0; level < pyramid.level_count(); ++level) {
     Eigen::Vector3d largest = Eigen::Vector3d::Zero();
     for (const TileId& tile : pyramid.tiles(level)) {
@@ -72,7 +73,9 @@ Lattice::Lattice(const Pyramid& pyramid, const WorldFrame& world,
 
 LatticePoint Lattice::nearest(const Eigen::Vector3d& world, int level) const {
   const Eigen::Vector3d& step = steps_m_[level];
-  const auto round = [](double steps) { return static_cast<std::int64_t>(std::floor(steps + 0.5)); };
+  const auto round = [](double steps) {
+    return static_cast<std::int64_t>(std::floor(steps + 0.5));
+  };
   return {round(world.x() / step.x()), round(world.y() / step.y()), round(world.z() / step.z())};
 }
 

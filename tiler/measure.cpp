@@ -1,9 +1,8 @@
 #include "tiler/measure.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-
-#include <Eigen/Geometry>
 
 #include "hierarchy/collapse/sample_field.h"
 
@@ -29,8 +28,8 @@ class Measurement {
     // as a ray along the plumb line meets a triangle (Moeller and Trumbore 1997)
     const Eigen::Vector3d corner = a.world;
     const Eigen::Vector3d side_b = b.world - corner, side_c = c.world - corner;
-    const double slack_cells = kOnEdge + std::max({bend_cells(a, b), bend_cells(b, c),
-                                                   bend_cells(c, a)});
+    const double slack_cells =
+        kOnEdge + std::max({bend_cells(a, b), bend_cells(b, c), bend_cells(c, a)});
     for_each_span(a.plan, b.plan, c.plan, extent_, slack_cells,
                   [&](std::int64_t row, std::int64_t first, std::int64_t last) {
                     for (std::int64_t column = first; column <= last; ++column) {
@@ -110,7 +109,8 @@ class Measurement {
     worst_m(column, row) = std::max(worst_m(column, row), std::abs(on_mesh_m - height_m));
   }
 
-  void add_near_rim(std::int64_t column, std::int64_t row, const WorldVertex& a, const WorldVertex& b) {
+  void add_near_rim(std::int64_t column, std::int64_t row, const WorldVertex& a,
+                    const WorldVertex& b) {
     if (worst_m(column, row) != kUnmeasured) return;
     const Plumb plumb = plumb_at(column, row);
     const auto flat = [&](const Eigen::Vector3d& v) -> Eigen::Vector3d {

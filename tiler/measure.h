@@ -1,9 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 #include <utility>
-
-#include <Eigen/Core>
 
 #include "core/height_grid.h"
 #include "hierarchy/collapse/sample_field.h"

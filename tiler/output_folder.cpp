@@ -1,9 +1,8 @@
 #include "tiler/output_folder.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
@@ -41,13 +40,14 @@ fs::path OutputFolder::finished_tile(const TileId& tile) const {
 void OutputFolder::claim(bool force) const {
   std::error_code error;
   if (fs::exists(root_, error) && !fs::is_directory(root_, error)) {
-    throw OutputError(fmt::format("{}: is a file, not a folder. Choose another output folder",
-                                  root_.string()));
+    throw OutputError(
+        fmt::format("{}: is a file, not a folder. Choose another output folder", root_.string()));
   }
   fs::create_directories(root_, error);
   if (error) {
-    throw OutputError(fmt::format("{}: the folder cannot be made ({}). Choose another output folder",
-                                  root_.string(), error.message()));
+    throw OutputError(
+        fmt::format("{}: the folder cannot be made ({}). Choose another output folder",
+                    root_.string(), error.message()));
   }
   const bool is_ours = fs::exists(summary(), error) || fs::exists(work() / "key", error);
   if (force || is_ours || holds_nothing(root_)) return;

@@ -1,8 +1,8 @@
 #include "tiler/pyramid.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace terrane::tiler {
 

@@ -8,8 +8,8 @@
 
 namespace terrane::tiler {
 
-/// The native quadtree over a DEM: leaf tiles of tile_cells x tile_cells cells from the first sample
-/// on, ragged at the last columns and rows, four tiles to one, until one is left.
+/// The native quadtree over a DEM: leaf tiles of tile_cells x tile_cells cells from the first
+/// sample on, ragged at the last columns and rows, four tiles to one, until one is left.
 class Pyramid {
  public:
   /// \param tile_cells  cells along a leaf tile, 1 or more.

@@ -1,18 +1,17 @@
 #include "tiler/terrain_normals.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
-
-#include <Eigen/Geometry>
 
 namespace terrane::tiler {
 namespace {
 
 std::optional<double> height_at(const HeightGrid& grid, std::int64_t column, std::int64_t row) {
   const Window& w = grid.window;
-  if (column < w.column || row < w.row || column >= w.column + w.columns ||
-      row >= w.row + w.rows || !grid.has_data(column, row)) {
+  if (column < w.column || row < w.row || column >= w.column + w.columns || row >= w.row + w.rows ||
+      !grid.has_data(column, row)) {
     return std::nullopt;
   }
   return grid.at(column, row);
@@ -48,8 +47,7 @@ std::vector<Eigen::Vector3f> terrain_normals(std::span<const hierarchy::Place> p
     const Eigen::Vector3d along_columns = frame.plumb(c + 0.5, r).base -
                                           frame.plumb(c - 0.5, r).base +
                                           slope(grid, column, row, reach, 0) * here.up;
-    const Eigen::Vector3d along_rows = frame.plumb(c, r + 0.5).base -
-                                       frame.plumb(c, r - 0.5).base +
+    const Eigen::Vector3d along_rows = frame.plumb(c, r + 0.5).base - frame.plumb(c, r - 0.5).base +
                                        slope(grid, column, row, 0, reach) * here.up;
     const Eigen::Vector3d normal = along_columns.cross(along_rows).normalized();
     normals.push_back((normal.dot(here.up) < 0 ? Eigen::Vector3d(-normal) : normal).cast<float>());

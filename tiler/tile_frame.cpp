@@ -1,12 +1,12 @@
 #include "tiler/tile_frame.h"
 
-#include <cmath>
-#include <numbers>
+#include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <fmt/format.h>
+#include <cmath>
+#include <numbers>
 
 #include "core/errors.h"
 
@@ -180,7 +180,8 @@ Place TileFrame::place(GridPoint plan, double height_m) const {
   const Plumb here = plumb(column, row);
   const double true_height_m = height_m + drop_m(column, row);
   const LatticePoint point = lattice_.nearest(here.base + true_height_m * here.up, level_);
-  const Eigen::Vector3d rounding = lattice_.world(point, level_) - here.base - true_height_m * here.up;
+  const Eigen::Vector3d rounding =
+      lattice_.world(point, level_) - here.base - true_height_m * here.up;
   // the rounding is a step at most: the map is linear enough over that
   const Eigen::Vector3d move = grid_per_world_ * rounding;
   Place place{.plan = grid_point(column + move[0], row + move[1]), .lattice = point};

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
+#include <vector>
 
 #include "core/height_grid.h"
 #include "hierarchy/collapse/terrain_mesh.h"

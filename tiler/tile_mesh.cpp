@@ -1,10 +1,10 @@
 #include "tiler/tile_mesh.h"
 
+#include <fmt/format.h>
+
 #include <cstring>
 #include <string>
 #include <type_traits>
-
-#include <fmt/format.h>
 
 #include "core/errors.h"
 #include "tiler/whole_file.h"
@@ -51,7 +51,8 @@ class Reader {
     return values;
   }
   [[noreturn]] void refuse() const {
-    throw InputError(fmt::format("{}: is damaged. Build again with --force", name_));
+    throw InputError(
+        fmt::format("{}: is damaged. Remove the output folder's .work and build again", name_));
   }
 
  private:

@@ -1,9 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "core/lattice_point.h"
 #include "hierarchy/mesh/grid_triangles.h"
@@ -21,10 +20,10 @@ struct MeasuredError {
 
 /// A finished mesh of one tile at one level: just what the next level and the writer need.
 struct TileMesh {
-  std::vector<LatticePoint> points;             ///< on the lattice of the tile's level
-  std::vector<hierarchy::SampleId> samples;     ///< of outline and seam vertices; {-1, -1} inside
-  std::vector<Eigen::Vector3f> normals;         ///< unit, in the world
-  std::vector<hierarchy::Corners> triangles;    ///< counter-clockwise with rows downward
+  std::vector<LatticePoint> points;           ///< on the lattice of the tile's level
+  std::vector<hierarchy::SampleId> samples;   ///< of outline and seam vertices; {-1, -1} inside
+  std::vector<Eigen::Vector3f> normals;       ///< unit, in the world
+  std::vector<hierarchy::Corners> triangles;  ///< counter-clockwise with rows downward
   MeasuredError error;
 };
 
@@ -33,8 +32,8 @@ struct TileRecord {
   TileId tile;
   std::int64_t triangles = 0;
   std::int64_t bytes = 0;
-  MeasuredError error;             ///< max_m: at least the children's
-  Eigen::Vector3d low, high;       ///< box of the tile, its morphed places and its children's boxes
+  MeasuredError error;        ///< max_m: at least the children's
+  Eigen::Vector3d low, high;  ///< box of the tile, its morphed places and its children's boxes
 };
 
 /// A tile whose descendants are written: what a build keeps in its work folder to go on from.

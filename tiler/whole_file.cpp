@@ -1,12 +1,12 @@
 #include "tiler/whole_file.h"
 
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <sstream>
-
-#include <fmt/format.h>
 
 #include "core/errors.h"
 
@@ -14,9 +14,10 @@ namespace terrane::tiler {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& file, int reason) {
-  throw OutputError(fmt::format("{}: cannot be written ({}). Free some space, check the folder's "
-                                "permissions, or choose another output folder",
-                                file.string(), std::strerror(reason)));
+  throw OutputError(
+      fmt::format("{}: cannot be written ({}). Free some space, check the folder's "
+                  "permissions, or choose another output folder",
+                  file.string(), std::strerror(reason)));
 }
 
 /// \return 0, or the system's error number.

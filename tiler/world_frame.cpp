@@ -29,8 +29,8 @@ std::vector<Plumb> WorldFrame::plumbs(std::span<const GridPosition> positions) c
   if (is_local()) {
     for (const GridPosition& position : positions) {
       const PlanPosition plan = place_.to_plan(position);
-      result.push_back({{plan.x - local_origin_.x, plan.y - local_origin_.y, 0},
-                        Eigen::Vector3d::UnitZ()});
+      result.push_back(
+          {{plan.x - local_origin_.x, plan.y - local_origin_.y, 0}, Eigen::Vector3d::UnitZ()});
     }
     return result;
   }

@@ -1,11 +1,10 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <memory>
 #include <span>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "core/georeference.h"
 #include "core/height_grid.h"
@@ -31,7 +30,7 @@ class WorldFrame {
   std::vector<Plumb> plumbs(std::span<const GridPosition> positions) const;
 
   bool is_local() const { return tangent_ == nullptr; }
-  LonLat origin() const { return origin_; }              ///< \pre !is_local()
+  LonLat origin() const { return origin_; }                    ///< \pre !is_local()
   PlanPosition local_origin() const { return local_origin_; }  ///< \pre is_local()
 
   /// East-north-up to Earth-centred, column by column as glTF and 3D Tiles want it.

@@ -1,17 +1,16 @@
 #include "tiler/write_glb.h"
 
+#include <fmt/format.h>
+#include <meshoptimizer.h>
+#include <tiny_gltf.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <sstream>
-
-#include <fmt/format.h>
-#include <meshoptimizer.h>
-#include <tiny_gltf.h>
-
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "core/errors.h"
 
@@ -143,8 +142,8 @@ class Buffers {
   int add_indices(const std::vector<std::uint32_t>& indices, std::size_t vertices,
                   std::size_t bytes_per_index) {
     std::vector<unsigned char> coded(meshopt_encodeIndexBufferBound(indices.size(), vertices));
-    coded.resize(meshopt_encodeIndexBuffer(coded.data(), coded.size(), indices.data(),
-                                           indices.size()));
+    coded.resize(
+        meshopt_encodeIndexBuffer(coded.data(), coded.size(), indices.data(), indices.size()));
     return add(coded, indices.size(), bytes_per_index, "TRIANGLES", false, nullptr);
   }
 
@@ -159,11 +158,14 @@ class Buffers {
     view["byteOffset"] = fallback_;
     view["byteLength"] = count * stride;
     if (is_vertices) view["byteStride"] = stride;
-    view["target"] = is_vertices ? TINYGLTF_TARGET_ARRAY_BUFFER
-                                 : TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
-    view["extensions"][kMeshopt] = {{"buffer", 0},         {"byteOffset", bytes_.size()},
-                                    {"byteLength", coded.size()}, {"byteStride", stride},
-                                    {"mode", mode},        {"count", count}};
+    view["target"] =
+        is_vertices ? TINYGLTF_TARGET_ARRAY_BUFFER : TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
+    view["extensions"][kMeshopt] = {{"buffer", 0},
+                                    {"byteOffset", bytes_.size()},
+                                    {"byteLength", coded.size()},
+                                    {"byteStride", stride},
+                                    {"mode", mode},
+                                    {"count", count}};
     if (filter != nullptr) view["extensions"][kMeshopt]["filter"] = filter;
     views_.push_back(std::move(view));
     fallback_ += (count * stride + 3) / 4 * 4;
@@ -209,8 +211,8 @@ tinygltf::Value describe(const TileId& tile, const LatticePoint& origin) {
   own["level"] = number(tile.level);
   own["x"] = number(tile.x);
   own["y"] = number(tile.y);
-  own["origin"] = tinygltf::Value(tinygltf::Value::Array{number(origin.i), number(origin.j),
-                                                         number(origin.k)});
+  own["origin"] =
+      tinygltf::Value(tinygltf::Value::Array{number(origin.i), number(origin.j), number(origin.k)});
   tinygltf::Value::Object extras;
   extras["terrane"] = tinygltf::Value(own);
   return tinygltf::Value(extras);

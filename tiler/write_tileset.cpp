@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-
 #include <nlohmann/json.hpp>
 
 namespace terrane::tiler {
@@ -24,9 +23,9 @@ class TileTree {
     json["boundingVolume"]["box"] = box(record);
     json["geometricError"] = data_set_.tolerance_m[tile.level];
     json["content"]["uri"] = "tiles/" + path_of(tile) + ".glb";
-    json["extras"]["terrane"] = {{"level", tile.level},          {"x", tile.x},
-                                 {"y", tile.y},                  {"triangles", record.triangles},
-                                 {"bytes", record.bytes},        {"max_error_m", record.error.max_m}};
+    json["extras"]["terrane"] = {{"level", tile.level},   {"x", tile.x},
+                                 {"y", tile.y},           {"triangles", record.triangles},
+                                 {"bytes", record.bytes}, {"max_error_m", record.error.max_m}};
     for (const TileId& child : pyramid_.children(tile)) {
       if (by_id_.contains(child)) json["children"].push_back(node(child));
     }
@@ -115,8 +114,8 @@ std::string terrane_json(const DataSet& data_set, const Lattice& lattice, const 
   json["frame"] = frame_json(world);
   json["tile_cells"] = data_set.tile_cells;
   for (int level = 0; level < static_cast<int>(data_set.tolerance_m.size()); ++level) {
-    json["levels"].push_back(level_json(level, data_set.tolerance_m[level], lattice.step_m(level),
-                                        records));
+    json["levels"].push_back(
+        level_json(level, data_set.tolerance_m[level], lattice.step_m(level), records));
   }
   return json.dump(2) + "\n";
 }

@@ -26,7 +26,8 @@ struct BoundaryVerdict {
 };
 
 /// Decides from the kinds of the core's corners. A corner on the outline gives way only along a
-/// straight run of samples, so no sample is ever uncovered and none is invented; a locked one never.
+/// straight run of samples, so no sample is ever uncovered and none is invented; a locked one
+/// never.
 ///
 /// \pre \p stencil is complete.
 BoundaryVerdict classify(const Stencil& stencil, const HalfedgeMesh& mesh,

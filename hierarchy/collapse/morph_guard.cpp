@@ -75,8 +75,8 @@ bool MorphGuard::is_sound(const Corners& triangle, std::span<const VertexId> cor
   std::array<const Place*, 3> end;
   for (std::size_t k = 0; k < 3; ++k) {
     const VertexId coarse = target_[triangle[k]];
-    end[k] = std::ranges::find(core, coarse) != core.end() ? &target
-                                                           : &coarser_[index(coarse)].place;
+    end[k] =
+        std::ranges::find(core, coarse) != core.end() ? &target : &coarser_[index(coarse)].place;
     from[k] = finer_[triangle[k]].plan;
     to[k] = end[k]->plan;
   }

@@ -13,8 +13,8 @@ namespace terrane::hierarchy {
 ///
 /// Every vertex of the finer level moves on a straight line to the vertex of the coarser mesh that
 /// it was collapsed into. The guard knows these targets, and refuses a collapse after which a
-/// triangle of the finer level would turn over at some t < 1, or leave the tolerance at t = 1/4, 1/2
-/// or 3/4.
+/// triangle of the finer level would turn over at some t < 1, or leave the tolerance at t = 1/4,
+/// 1/2 or 3/4.
 class MorphGuard {
  public:
   /// \param finer      places of the finer level, one per vertex of the mesh to be collapsed.

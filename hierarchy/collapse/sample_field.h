@@ -18,7 +18,8 @@ struct SampleField {
   std::int64_t rows = 0;
   std::vector<double> heights_m;  ///< row by row
   /// Samples this near to a triangle, in cells, count as under it: by rounding, one on the outline
-  /// may lie just outside. At least a little, as a sample on an edge is better met twice than never.
+  /// may lie just outside. At least a little, as a sample on an edge is better met twice than
+  /// never.
   double slack_cells = 1e-7;
 
   const double* row(std::int64_t r) const {
@@ -54,20 +55,17 @@ bool for_each_span(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c
       // the part of the side between the lines above and below the row
       const auto [upper, lower] = p->row < q->row ? std::pair{p, q} : std::pair{q, p};
       if (lower->row < above || upper->row > below) continue;
-      const double per_row = lower->row > upper->row
-                                 ? (lower->column - upper->column) / (lower->row - upper->row)
-                                 : 0;
-      const double at_top = above <= upper->row
-                                ? upper->column
-                                : upper->column + (above - upper->row) * per_row;
-      const double at_bottom = below >= lower->row
-                                   ? lower->column
-                                   : upper->column + (below - upper->row) * per_row;
+      const double per_row =
+          lower->row > upper->row ? (lower->column - upper->column) / (lower->row - upper->row) : 0;
+      const double at_top =
+          above <= upper->row ? upper->column : upper->column + (above - upper->row) * per_row;
+      const double at_bottom =
+          below >= lower->row ? lower->column : upper->column + (below - upper->row) * per_row;
       left = std::min({left, at_top, at_bottom});
       right = std::max({right, at_top, at_bottom});
     }
-    const auto first = std::max<std::int64_t>(
-        0, static_cast<std::int64_t>(std::ceil(left - slack_cells)));
+    const auto first =
+        std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(left - slack_cells)));
     const auto last = std::min<std::int64_t>(
         field.columns - 1, static_cast<std::int64_t>(std::floor(right + slack_cells)));
     if (first <= last && !visit(row, first, last)) return false;

@@ -50,9 +50,9 @@ struct Feasible {
 
 bool add_triangle(const FieldPoint& centre, const StarSide& side, const SampleField& field,
                   double tolerance_m, Feasible& feasible) {
-  const Plane weight = plane_through({centre.column, centre.row, 1},
-                                     {side.from.column, side.from.row, 0},
-                                     {side.to.column, side.to.row, 0});
+  const Plane weight =
+      plane_through({centre.column, centre.row, 1}, {side.from.column, side.from.row, 0},
+                    {side.to.column, side.to.row, 0});
   const Plane rest = plane_through({centre.column, centre.row, 0}, side.from, side.to);
   return for_each_span(
       centre, side.from, side.to, field, kOnEdge_cells,
@@ -94,8 +94,8 @@ bool is_within(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
                        [&](std::int64_t row, std::int64_t first, std::int64_t last) {
                          const double* heights = field.row(row);
                          for (std::int64_t column = first; column <= last; ++column) {
-                           const double z = plane.at(static_cast<double>(column),
-                                                     static_cast<double>(row));
+                           const double z =
+                               plane.at(static_cast<double>(column), static_cast<double>(row));
                            // written so that NaN, no data, passes
                            if (std::abs(z - heights[column]) > tolerance_m) return false;
                          }

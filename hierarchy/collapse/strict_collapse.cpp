@@ -81,8 +81,7 @@ class StrictCollapse {
         newest = std::max(newest, changed_[index(mesh_.start(HalfedgeMesh::halfedge(t, k)))]);
       }
       if (!is_due(tested_[i], newest)) continue;
-      result_.triangle_collapses +=
-          count(try_collapse(walker_.around_triangle(t, stencil_)));
+      result_.triangle_collapses += count(try_collapse(walker_.around_triangle(t, stencil_)));
     }
     return result_.triangle_collapses - before;
   }
@@ -219,9 +218,9 @@ class StrictCollapse {
       const std::int64_t area = orient2d(centre, side.first, side.second);
       if (area <= 0) return false;
       // altitude = twice the area / longest side; squared, as roots took a quarter of all the time
-      const double longest2 = std::max({squared_length(centre, side.first),
-                                        squared_length(centre, side.second),
-                                        squared_length(side.first, side.second)});
+      const double longest2 =
+          std::max({squared_length(centre, side.first), squared_length(centre, side.second),
+                    squared_length(side.first, side.second)});
       const double altitude = options_.smallest_altitude_cells * kUnitsPerCell;
       const auto twice_area = static_cast<double>(area);
       return twice_area * twice_area >= longest2 * altitude * altitude;

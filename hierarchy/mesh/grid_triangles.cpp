@@ -28,8 +28,7 @@ bool runs_against_the_rule(const Window& window, std::int64_t column, std::int64
 class Triangulation {
  public:
   explicit Triangulation(const Window& window)
-      : window_(window),
-        number_(static_cast<std::size_t>(window.columns * window.rows), kUnused) {}
+      : window_(window), number_(static_cast<std::size_t>(window.columns * window.rows), kUnused) {}
 
   void add(SampleId a, SampleId b, SampleId c) {
     corners_.push_back({place(a), place(b), place(c)});
@@ -41,9 +40,8 @@ class Triangulation {
     for (std::uint32_t p = 0; p < number_.size(); ++p) {
       if (number_[p] == kUnused) continue;
       number_[p] = static_cast<std::uint32_t>(result.vertices.size());
-      result.vertices.push_back(
-          {static_cast<std::int32_t>(window_.column + p % window_.columns),
-           static_cast<std::int32_t>(window_.row + p / window_.columns)});
+      result.vertices.push_back({static_cast<std::int32_t>(window_.column + p % window_.columns),
+                                 static_cast<std::int32_t>(window_.row + p / window_.columns)});
     }
     for (Corners& corners : corners_) {
       for (std::uint32_t& corner : corners) corner = number_[corner];

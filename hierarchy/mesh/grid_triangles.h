@@ -18,7 +18,7 @@ struct SampleId {
 
 /// A full-resolution mesh: its vertices are samples.
 struct GridTriangles {
-  std::vector<SampleId> vertices;   ///< row by row; only those that a triangle uses
+  std::vector<SampleId> vertices;  ///< row by row; only those that a triangle uses
   std::vector<Corners> triangles;  ///< indices into vertices; counter-clockwise with rows downward
 };
 

@@ -1,10 +1,10 @@
 #include "hierarchy/mesh/halfedge_mesh.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <tuple>
-
-#include <fmt/format.h>
 
 #include "core/errors.h"
 
@@ -18,9 +18,7 @@ struct DirectedEdge {
   bool operator<(const DirectedEdge& other) const {
     return std::tie(low, high, halfedge) < std::tie(other.low, other.high, other.halfedge);
   }
-  bool same_edge(const DirectedEdge& other) const {
-    return low == other.low && high == other.high;
-  }
+  bool same_edge(const DirectedEdge& other) const { return low == other.low && high == other.high; }
 };
 
 void check_corners(std::span<const Corners> triangles, std::uint32_t vertex_count) {
@@ -30,8 +28,8 @@ void check_corners(std::span<const Corners> triangles, std::uint32_t vertex_coun
       throw TopologyError(fmt::format("triangle {}: repeats a corner ({}, {}, {})", t, a, b, c));
     }
     if (std::max({a, b, c}) >= vertex_count) {
-      throw TopologyError(fmt::format("triangle {}: names vertex {} of {}", t,
-                                      std::max({a, b, c}), vertex_count));
+      throw TopologyError(
+          fmt::format("triangle {}: names vertex {} of {}", t, std::max({a, b, c}), vertex_count));
     }
   }
 }
@@ -65,8 +63,8 @@ void HalfedgeMesh::pair_edges() {
   edges.reserve(start_.size());
   for (std::uint32_t i = 0; i < start_.size(); ++i) {
     const HalfedgeId h{i};
-    const auto [low, high] = std::minmax({static_cast<std::uint32_t>(start(h)),
-                                          static_cast<std::uint32_t>(end(h))});
+    const auto [low, high] =
+        std::minmax({static_cast<std::uint32_t>(start(h)), static_cast<std::uint32_t>(end(h))});
     edges.push_back({low, high, h});
   }
   std::sort(edges.begin(), edges.end());

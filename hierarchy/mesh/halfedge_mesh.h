@@ -24,8 +24,8 @@ using Corners = std::array<std::uint32_t, 3>;
 ///          / t    \               outgoing half-edges of a vertex in counter-clockwise order:
 ///     start ──h──▶ end            h, opposite(prev(h)), ...
 ///
-/// Guarantees: a vertex has one fan of triangles. A collapse never allocates: it kills triangles and
-/// vertices in place and leaves the other ids as they are.
+/// Guarantees: a vertex has one fan of triangles. A collapse never allocates: it kills triangles
+/// and vertices in place and leaves the other ids as they are.
 class HalfedgeMesh {
  public:
   /// Builds the mesh of a list of triangles.
@@ -73,8 +73,9 @@ class HalfedgeMesh {
   /// Removes the triangles of an edge or of a triangle with its neighbours and joins the corners in
   /// one vertex, which stays alive under the id \p kept.
   ///
-  /// \param spokes  outgoing half-edges of the corners in the triangles that stay (Stencil::spokes).
-  /// \param dying   for each pair of neighbours that dies the half-edge towards the core:
+  /// \param spokes  outgoing half-edges of the corners in the triangles that stay
+  /// (Stencil::spokes). \param dying   for each pair of neighbours that dies the half-edge towards
+  /// the core:
   ///                one for each side of the triangle, or the two sides of the edge.
   /// \pre the stencil is complete (hierarchy/mesh/stencil.h).
   void collapse(std::span<const HalfedgeId> spokes, std::span<const HalfedgeId> dying,

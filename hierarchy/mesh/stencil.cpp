@@ -9,8 +9,8 @@ namespace {
 // a drop from 4 to 3 makes a cycle (P1, section 3.2); allowing it gave no fewer triangles
 constexpr std::uint32_t kSmallestApexValence = 5;
 
-// an edge collapse may leave valence 3: the star of such a vertex is a plain subdivided triangle, and
-// refusing it cost 1 to 2 % more triangles on terrain (docs/benchmarks.md)
+// an edge collapse may leave valence 3: the star of such a vertex is a plain subdivided triangle,
+// and refusing it cost 1 to 2 % more triangles on terrain (docs/benchmarks.md)
 constexpr std::uint32_t kSmallestApexValenceOfEdge = 4;
 
 }  // namespace

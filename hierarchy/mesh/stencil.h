@@ -11,12 +11,12 @@ namespace terrane::hierarchy {
 /// Why a triangle or an edge may not collapse, or kYes. Counted in reports.
 enum class Collapsibility : std::uint8_t {
   kYes,
-  kCyclic,          ///< a corner has valence 3, or the boundary polygon meets itself
-  kValence,         ///< a neighbour's apex would drop to valence 3 or less
-  kBoundary,        ///< type 4, or a rule of the lines forbids it
-  kNotStarShaped,   ///< the boundary polygon does not see the new place
-  kOverTolerance,   ///< a sample would be too far away
-  kMorph,           ///< the blend from the finer level would fold or leave the tolerance
+  kCyclic,         ///< a corner has valence 3, or the boundary polygon meets itself
+  kValence,        ///< a neighbour's apex would drop to valence 3 or less
+  kBoundary,       ///< type 4, or a rule of the lines forbids it
+  kNotStarShaped,  ///< the boundary polygon does not see the new place
+  kOverTolerance,  ///< a sample would be too far away
+  kMorph,          ///< the blend from the finer level would fold or leave the tolerance
 };
 inline constexpr int kCollapsibilityCount = 7;
 
@@ -25,8 +25,8 @@ inline constexpr int kCollapsibilityCount = 7;
 /// \par Source
 /// Gieng et al. 1998, section 3.1 (stencil, boundary polygon).
 struct Stencil {
-  std::vector<VertexId> polygon;     ///< boundary polygon, counter-clockwise
-  std::vector<HalfedgeId> spokes;    ///< from the core into the triangles that stay
+  std::vector<VertexId> polygon;      ///< boundary polygon, counter-clockwise
+  std::vector<HalfedgeId> spokes;     ///< from the core into the triangles that stay
   std::array<HalfedgeId, 3> dying{};  ///< see HalfedgeMesh::collapse
   std::array<VertexId, 3> core{};
   std::uint32_t core_size = 0;  ///< 2: an edge, 3: a triangle

@@ -1,8 +1,8 @@
-// The stages of `terrane build` on St. Helens, 30 m (327 x 468 samples), or on a synthetic caldera of
-// about the same size where that file is not at hand: the label says which.
-#include <filesystem>
-
+// The stages of `terrane build` on St. Helens, 30 m (327 x 468 samples), or on a synthetic caldera
+// of about the same size where that file is not at hand: the label says which.
 #include <benchmark/benchmark.h>
+
+#include <filesystem>
 
 #include "ingest/scan.h"
 #include "tiler/build.h"
@@ -52,7 +52,8 @@ BENCHMARK(BM_OpenAndScan)->Unit(benchmark::kMillisecond);
 void BM_BuildLeaf(benchmark::State& state) {
   const Dem dem;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(tiler::build_leaf(dem.tiles, kLeaf, static_cast<double>(state.range(0))));
+    benchmark::DoNotOptimize(
+        tiler::build_leaf(dem.tiles, kLeaf, static_cast<double>(state.range(0))));
   }
   state.SetItemsProcessed(state.iterations() * 8192);
   state.SetLabel("input triangles");

@@ -1,10 +1,10 @@
 #include "tiler/build.h"
 
-#include <atomic>
-#include <random>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <atomic>
+#include <random>
 
 #include "core/errors.h"
 #include "tests/tiler/test_dem.h"
@@ -139,16 +139,22 @@ INSTANTIATE_TEST_SUITE_P(
         Awkward{"TwoByTwo", {2, 2}, [](auto c, auto r) { return 3.0 * c * r; }},
         Awkward{"Checkerboard", {30, 21}, [](auto c, auto r) { return (c + r) % 2 * 10.0; }},
         Awkward{"Cliff", {33, 33}, [](auto c, auto r) { return 2 * c > r + 16 ? 300.0 : 0.0; }},
-        Awkward{"Spikes", {37, 41}, [](auto c, auto r) { return c % 9 == 4 && r % 7 == 3 ? 80 : 0.; }},
+        Awkward{
+            "Spikes", {37, 41}, [](auto c, auto r) { return c % 9 == 4 && r % 7 == 3 ? 80 : 0.; }},
         Awkward{"Plateaus", {40, 30}, [](auto c, auto r) { return 25.0 * (c / 7 + r / 5); }},
         Awkward{"LongAndThin", {200, 3}, [](auto c, auto r) { return hills(c, r); }},
-        Awkward{"SingleSampleHoles", {40, 40},
+        Awkward{"SingleSampleHoles",
+                {40, 40},
                 [](auto c, auto r) { return c % 6 == 2 && r % 5 == 3 ? NAN : hills(c, r); }},
-        Awkward{"HolesOnSeams", {40, 40},
+        Awkward{"HolesOnSeams",
+                {40, 40},
                 [](auto c, auto r) { return c % 8 == 0 && r % 5 < 2 ? NAN : hills(c, r); }},
-        Awkward{"TouchingHoles", {24, 24},
-                [](auto c, auto r) { return c / 3 % 2 == r / 3 % 2 && c % 3 && r % 3 ? NAN : 5.0; }},
-        Awkward{"SlantedRim", {50, 50},
+        Awkward{
+            "TouchingHoles",
+            {24, 24},
+            [](auto c, auto r) { return c / 3 % 2 == r / 3 % 2 && c % 3 && r % 3 ? NAN : 5.0; }},
+        Awkward{"SlantedRim",
+                {50, 50},
                 [](auto c, auto r) { return r < c / 9 || c < r / 7 ? NAN : hills(c, r); }}),
     [](const auto& tested) { return std::string(tested.param.name); });
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <gtest/gtest.h>
+#include <unistd.h>
+
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -7,9 +10,6 @@
 #include <map>
 #include <sstream>
 #include <string>
-
-#include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "core/georeference.h"
 #include "core/height_source.h"
@@ -29,8 +29,7 @@ class FunctionDem final : public HeightSource {
   HeightGrid read(const Window& window) const override {
     HeightGrid grid{window, {}};
     for (std::int64_t row = window.row; row < window.row + window.rows; ++row) {
-      for (std::int64_t column = window.column; column < window.column + window.columns;
-           ++column) {
+      for (std::int64_t column = window.column; column < window.column + window.columns; ++column) {
         grid.heights_m.push_back(static_cast<float>(height_(column, row)));
       }
     }

@@ -40,8 +40,7 @@ TEST_F(GeographicTile, PlaceIsWrittenWithinHalfAStepOnEveryAxis) {
   const double column = hierarchy::column_of(wished), row = hierarchy::row_of(wished);
   const Place place = frame_.place(wished, 1234.56 - frame_.drop_m(column, row));
   const Plumb plumb = frame_.plumb(column, row);
-  const Eigen::Vector3d off =
-      lattice_.world(place.lattice, 0) - (plumb.base + 1234.56 * plumb.up);
+  const Eigen::Vector3d off = lattice_.world(place.lattice, 0) - (plumb.base + 1234.56 * plumb.up);
   EXPECT_TRUE((off.cwiseAbs().array() <= lattice_.step_m(0).array() / 2 + 1e-9).all());
 }
 

@@ -1,9 +1,8 @@
 #include "tiler/write_glb.h"
 
-#include <cstring>
-
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
@@ -54,17 +53,17 @@ TEST(EncodeGlb, NodePutsTheOriginWhereItLiesInTheWorldYUp) {
 
 TEST(EncodeGlb, MorphTargetAndAttributeAreOneAccessor) {
   const TileMesh mesh = square();
-  const auto primitive =
-      json_of(encode_glb({0, 0, 0}, mesh, mesh.points, {1, 1, 1}, false))["meshes"][0]["primitives"]
-             [0];
+  const auto primitive = json_of(
+      encode_glb({0, 0, 0}, mesh, mesh.points, {1, 1, 1}, false))["meshes"][0]["primitives"][0];
   EXPECT_EQ(primitive["targets"][0]["POSITION"], primitive["attributes"]["_MORPH"]);
 }
 
 TEST(EncodeGlb, AccessorBoundsAreThoseOfThePositions) {
   const TileMesh mesh = square();
   const auto json = json_of(encode_glb({0, 0, 0}, mesh, mesh.points, {1, 1, 1}, false));
-  const auto position = json["accessors"][json["meshes"][0]["primitives"][0]["attributes"]
-                                              ["POSITION"].get<std::size_t>()];
+  const auto position =
+      json["accessors"]
+          [json["meshes"][0]["primitives"][0]["attributes"]["POSITION"].get<std::size_t>()];
   EXPECT_EQ(position["min"], (std::vector<double>{-5, -3, -5}));
   EXPECT_EQ(position["max"], (std::vector<double>{5, 3, 5}));
 }

@@ -52,8 +52,7 @@ void check_extras(const json& extras, TileMesh& mesh) {
 }
 
 /// Clients cull by min and max; a wrong one makes a tile vanish.
-void check_bounds(const json& accessor, const std::vector<Glb::Whole>& values,
-                  TileMesh& mesh) {
+void check_bounds(const json& accessor, const std::vector<Glb::Whole>& values, TileMesh& mesh) {
   Glb::Whole least = values.front();
   Glb::Whole most = values.front();
   for (const auto& value : values) {

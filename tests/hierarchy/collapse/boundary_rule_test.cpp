@@ -14,8 +14,7 @@ using testing::terrain_of;
 /// 6 x 6 samples, vertex = 6 row + column.
 class GridRule : public ::testing::Test {
  protected:
-  GridRule()
-      : mesh_(36, terrain_.triangles), walker_(mesh_) {}
+  GridRule() : mesh_(36, terrain_.triangles), walker_(mesh_) {}
 
   HalfedgeId edge(std::uint32_t from, std::uint32_t to) const {
     const HalfedgeId first = mesh_.outgoing(VertexId{from});
@@ -40,9 +39,7 @@ class GridRule : public ::testing::Test {
   ExactPlacer placer_;
 };
 
-TEST_F(GridRule, InnerEdgeIsFree) {
-  EXPECT_EQ(of_edge(14, 15).type, BoundaryType::kInterior);
-}
+TEST_F(GridRule, InnerEdgeIsFree) { EXPECT_EQ(of_edge(14, 15).type, BoundaryType::kInterior); }
 
 TEST_F(GridRule, EdgeWithOneEndOnTheOutlineGoesToThatEnd) {
   const BoundaryVerdict verdict = of_edge(8, 2);

@@ -39,8 +39,8 @@ TEST(StarFit, RefusesWhereTwoSamplesCannotBothBeKept) {
 }
 
 TEST(StarFit, SamplesWithoutDataConstrainNothing) {
-  const SampleField field = field_of(
-      grid_of(9, 9, [](auto c, auto r) { return c == 3 && r == 3 ? NAN : 0; }));
+  const SampleField field =
+      field_of(grid_of(9, 9, [](auto c, auto r) { return c == 3 && r == 3 ? NAN : 0; }));
   const auto fit = fit_star(4, 4, square(4), field, 1, 0);
   ASSERT_TRUE(fit);
   EXPECT_NEAR(fit->height_m, 0, 1e-12);

@@ -1,8 +1,8 @@
 #include "hierarchy/collapse/strict_collapse.h"
 
-#include <random>
-
 #include <gtest/gtest.h>
+
+#include <random>
 
 #include "tests/hierarchy/test_meshes.h"
 
@@ -111,8 +111,8 @@ TEST_P(RandomTerrain, StaysWithinTheBoundCoversEverySampleAndFoldsNothing) {
   const bool has_cliff = random() % 2 == 0;
   const HeightGrid grid = grid_of(columns, rows, [&](auto c, auto r) {
     if (uniform(0, 1) < holes) return static_cast<double>(NAN);
-    const double hill = relief_m * std::sin(0.3 * static_cast<double>(c)) *
-                        std::cos(0.23 * static_cast<double>(r));
+    const double hill =
+        relief_m * std::sin(0.3 * static_cast<double>(c)) * std::cos(0.23 * static_cast<double>(r));
     return hill + uniform(0, roughness_m) + (has_cliff && c > r ? 60.0 : 0.0);
   });
   const TerrainMesh full = terrain_of(grid);

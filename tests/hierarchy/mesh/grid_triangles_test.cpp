@@ -1,8 +1,8 @@
 #include "hierarchy/mesh/grid_triangles.h"
 
-#include <algorithm>
-
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 #include "hierarchy/mesh/grid_point.h"
 #include "tests/hierarchy/test_meshes.h"
@@ -16,8 +16,7 @@ using testing::grid_of;
 bool has_triangle(const GridTriangles& mesh, SampleId a, SampleId b, SampleId c) {
   return std::ranges::any_of(mesh.triangles, [&](const Corners& corners) {
     const auto holds = [&](SampleId s) {
-      return std::ranges::any_of(corners,
-                                 [&](std::uint32_t v) { return mesh.vertices[v] == s; });
+      return std::ranges::any_of(corners, [&](std::uint32_t v) { return mesh.vertices[v] == s; });
     };
     return holds(a) && holds(b) && holds(c);
   });

@@ -1,10 +1,10 @@
 #include "hierarchy/mesh/halfedge_mesh.h"
 
-#include <random>
-#include <set>
+#include <gtest/gtest.h>
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
-#include <gtest/gtest.h>
+#include <random>
+#include <set>
 
 #include "core/errors.h"
 #include "hierarchy/mesh/stencil.h"
@@ -135,8 +135,8 @@ TEST_P(RandomCollapses, KeepTheMeshManifoldAndItsEulerCharacteristic) {
     const HalfedgeId h{static_cast<std::uint32_t>(random() % (mesh.triangle_count() * 3))};
     const TriangleId t = HalfedgeMesh::triangle(h);
     if (!mesh.is_live(t) || mesh.is_ghost(t)) continue;
-    const Collapsibility verdict = random() % 2 == 0 ? walker.around_triangle(t, stencil)
-                                                     : walker.around_edge(h, stencil);
+    const Collapsibility verdict =
+        random() % 2 == 0 ? walker.around_triangle(t, stencil) : walker.around_edge(h, stencil);
     if (verdict != Collapsibility::kYes) continue;
     mesh.collapse(stencil.spokes, stencil.dying_span(), stencil.core[0]);
     ++collapses;
