@@ -114,7 +114,6 @@ void TileFrame::derive(const Window& window) {
   Eigen::Matrix3d world_per_grid;
   world_per_grid << per_column, per_row, middle.up;
   grid_per_world_ = world_per_grid.inverse();
-  is_mirrored_ = per_column.cross(per_row).dot(middle.up) > 0;
   spacing_m_ = std::min(per_column.norm(), per_row.norm());
 
   // second differences over the whole tile: smaller steps would drown in rounding
@@ -157,7 +156,6 @@ Place TileFrame::solve(const Eigen::Vector3d& at) const {
     grid += move;
     if (std::abs(move[0]) < kAccuracy && std::abs(move[1]) < kAccuracy) break;
   }
-  // the plan is rounded to grid units: take the height where that plan is
   Place place{.plan = grid_point(grid[0], grid[1])};
   place.height_m = grid[2] - drop_m(grid[0], grid[1]);
   return place;

@@ -37,8 +37,6 @@ class TileFrame final : public hierarchy::Placer {
 
   /// Largest distance to the exact map that was found, doubled.
   double accuracy_m() const { return accuracy_m_; }
-  /// Does the grid run clockwise in the world (a south-up DEM)?
-  bool is_mirrored() const { return is_mirrored_; }
   /// Smaller distance between neighbouring samples along a row or a column, in metres.
   double spacing_m() const { return spacing_m_; }
 
@@ -58,7 +56,6 @@ class TileFrame final : public hierarchy::Placer {
   Eigen::Matrix3d grid_per_world_;  // (column, row, height) per metre at the middle
   Eigen::Vector3d curvature_;       // of the drop: column^2, column row, row^2
   double accuracy_m_ = 0;
-  bool is_mirrored_ = false;
   double spacing_m_ = 0;
 };
 

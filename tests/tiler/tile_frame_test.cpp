@@ -11,7 +11,6 @@ using hierarchy::GridPoint;
 using hierarchy::kUnitsPerCell;
 using hierarchy::Place;
 using testing::GeographicPlace;
-using testing::PlainPlace;
 
 /// A tile of 64 cells of 3 arc-seconds at 46 degrees north: the curvature shows.
 class GeographicTile : public ::testing::Test {
@@ -65,17 +64,6 @@ TEST_F(GeographicTile, LongEdgeAlongAParallelIsNotStraight) {
   };
   EXPECT_TRUE(frame_.is_straight(at(10), at(12)));
   EXPECT_FALSE(frame_.is_straight(at(0), at(64)));
-}
-
-TEST(TileFrame, OfASouthUpGridIsMirrored) {
-  const GridShape shape{65, 65};
-  const Pyramid pyramid(shape, 64);
-  for (const bool south_up : {false, true}) {
-    const PlainPlace place(10, south_up ? -10 : 10);
-    const WorldFrame world(place, shape);
-    const Lattice lattice(pyramid, world, {1, 0, 100, ""}, 1);
-    EXPECT_EQ(TileFrame(world, lattice, {0, 0, 65, 65}, 0).is_mirrored(), south_up);
-  }
 }
 
 }  // namespace

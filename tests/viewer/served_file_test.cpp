@@ -78,11 +78,11 @@ TEST_F(OpenServedFile, FollowsLinksThatStayInsideOnly) {
   fs::create_symlink(outside_.path() / "secret.txt", served() / "out_absolute.txt");
   fs::create_directory_symlink("..", served() / "up");
   fs::create_directory_symlink("../served-too", served() / "too");
-  fs::create_directory_symlink(".work", served() / "work");
+  fs::create_directory_symlink(".work", served() / "unhidden");
   fs::create_symlink("loop", served() / "loop");
   EXPECT_EQ(read("/inside.html"), "front page");
   for (const char* path : {"/out.txt", "/out_absolute.txt", "/up/secret.txt", "/too/secret.txt",
-                           "/work/state", "/loop"}) {
+                           "/unhidden/state", "/loop"}) {
     EXPECT_EQ(read(path), "(none)") << path;
   }
   EXPECT_EQ(read("/up/served/index.html"), "front page") << "leads out, and back in";
