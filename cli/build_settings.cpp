@@ -113,13 +113,6 @@ std::string repeatable(const std::string& source) {
 
 }  // namespace
 
-ingest::VerticalUnit vertical_unit_of(const std::string& word) {
-  const auto unit = ingest::parse_vertical_unit(word);
-  if (unit) return *unit;
-  throw ConfigError(
-      fmt::format("--vertical-unit {}: is not known. Use metre, foot or us-survey-foot", word));
-}
-
 void read_settings(const std::filesystem::path& file, BuildSettings& settings) {
   const std::string text = tiler::read_whole_file(file);
   toml::table table;

@@ -25,7 +25,4 @@ void read_settings(const std::filesystem::path& file, BuildSettings& settings);
 /// change it, and with full paths.
 std::string to_toml(const BuildSettings& settings);
 
-/// \throws ConfigError with the known words, if it is none of them.
-ingest::VerticalUnit vertical_unit_of(const std::string& word);
-
 }  // namespace terrane::cli

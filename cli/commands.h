@@ -11,6 +11,7 @@ struct CommonOptions {
 
 // Each adds a subcommand that runs as soon as the command line is read, and throws terrane::Error.
 void add_build_command(CLI::App& app, const CommonOptions& common);
+void add_simplify_command(CLI::App& app, const CommonOptions& common);
 void add_info_command(CLI::App& app, const CommonOptions& common);
 void add_verify_command(CLI::App& app, const CommonOptions& common);
 void add_serve_command(CLI::App& app, const CommonOptions& common);

@@ -6,8 +6,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cli/build_settings.h"
 #include "cli/commands.h"
+#include "cli/dem_options.h"
 #include "cli/terminal_progress.h"
 #include "core/errors.h"
 #include "ingest/scan.h"
@@ -17,10 +17,7 @@ namespace terrane::cli {
 namespace {
 
 struct InfoCommand {
-  std::vector<std::string> what;
-  std::optional<int> band;
-  std::optional<std::string> nodata, vertical_unit;
-  std::string crs;
+  DemOptions dem;  ///< or, as the only "DEM", an output folder
 };
 
 void print_row(std::string_view name, const std::string& value) {
@@ -49,10 +46,10 @@ void describe_output(const std::filesystem::path& out) {
 }
 
 void describe_dem(const InfoCommand& command, const CommonOptions& common) {
-  ingest::OpenOptions options{.band = command.band, .nodata = command.nodata, .crs = command.crs};
-  if (command.vertical_unit) options.vertical_unit = vertical_unit_of(*command.vertical_unit);
+  ingest::OpenOptions options;
+  apply(command.dem, options);
   const auto progress = make_progress(common.quiet);
-  const auto dem = ingest::open_dem(command.what, options, *progress);
+  const auto dem = ingest::open_dem(command.dem.dem, options, *progress);
   const HeightStatistics heights = ingest::scan_heights(*dem, *progress);
   const ingest::DemDescription& about = dem->description();
   const GridShape shape = dem->heights().shape();
@@ -80,8 +77,8 @@ void describe_dem(const InfoCommand& command, const CommonOptions& common) {
 }
 
 void run(const InfoCommand& command, const CommonOptions& common) {
-  const std::filesystem::path first = command.what.front();
-  if (command.what.size() == 1 && std::filesystem::exists(first / "terrane.json")) {
+  const std::filesystem::path first = command.dem.dem.front();
+  if (command.dem.dem.size() == 1 && std::filesystem::exists(first / "terrane.json")) {
     describe_output(first);
   } else {
     describe_dem(command, common);
@@ -93,12 +90,9 @@ void run(const InfoCommand& command, const CommonOptions& common) {
 void add_info_command(CLI::App& app, const CommonOptions& common) {
   auto command = std::make_shared<InfoCommand>();
   CLI::App* info = app.add_subcommand("info", "Describe a DEM, or what was built from one");
-  info->add_option("what", command->what, "DEM, several that make a mosaic, or an output folder")
-      ->required();
-  info->add_option("--band", command->band, "Band with the heights, from 1");
-  info->add_option("--nodata", command->nodata, "Stored value that means no data, or none");
-  info->add_option("--vertical-unit", command->vertical_unit, "metre, foot or us-survey-foot");
-  info->add_option("--crs", command->crs, "Coordinate reference system, like EPSG:4326");
+  add_dem_options(*info, command->dem)
+      ->required()
+      ->description("DEM, several that make a mosaic, or an output folder");
   info->callback([command, &common] { run(*command, common); });
 }
 

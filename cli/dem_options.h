@@ -1,0 +1,30 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ingest/dem.h"
+
+namespace terrane::cli {
+
+/// What a command line says about the DEM to read, and nothing of what it leaves open.
+struct DemOptions {
+  std::vector<std::string> dem;
+  std::optional<int> band;
+  std::optional<std::string> nodata, vertical_unit, crs;
+};
+
+/// Adds the DEM and the options that describe it to a subcommand.
+/// \return the option of the DEM itself.
+CLI::Option* add_dem_options(CLI::App& command, DemOptions& options);
+
+/// Puts what was given over \p settings.
+/// \throws ConfigError for an unknown vertical unit.
+void apply(const DemOptions& options, ingest::OpenOptions& settings);
+
+/// \throws ConfigError with the known words, if it is none of them.
+ingest::VerticalUnit vertical_unit_of(const std::string& word);
+
+}  // namespace terrane::cli

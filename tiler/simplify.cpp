@@ -1,0 +1,126 @@
+#include "tiler/simplify.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/errors.h"
+#include "hierarchy/collapse/strict_collapse.h"
+#include "hierarchy/mesh/grid_triangles.h"
+
+namespace terrane::tiler {
+namespace {
+
+using hierarchy::GridPoint;
+using hierarchy::Place;
+using hierarchy::SampleField;
+using hierarchy::TerrainMesh;
+using hierarchy::VertexKind;
+
+// what the collapse and the measurement may differ by in rounding: 9 km take 10^-11 m in doubles
+constexpr double kRounding_m = 1e-9;
+
+/// Writes places over the flat grid itself: plan as it is, heights in steps.
+class FlatPlacer final : public hierarchy::Placer {
+ public:
+  explicit FlatPlacer(double height_steps_per_m) : steps_per_m_(height_steps_per_m) {}
+
+  Place place(GridPoint plan, double height_m) const override {
+    const double steps = std::round(height_m * steps_per_m_);
+    return {plan, steps / steps_per_m_, {plan.x, plan.y, static_cast<std::int64_t>(steps)}};
+  }
+  bool is_straight(const Place&, const Place&) const override { return true; }
+
+ private:
+  double steps_per_m_;
+};
+
+void check_size(GridShape shape) {
+  if (shape.columns - 1 <= kMostCellsPerSide && shape.rows - 1 <= kMostCellsPerSide &&
+      shape.columns * shape.rows <= kMostSamplesInOneMesh) {
+    return;
+  }
+  throw InputError(fmt::format(
+      "the DEM has {} x {} samples, and one mesh holds {} at most, {} along a side. Cut the DEM "
+      "with gdal_translate -srcwin, or make tiles with terrane build",
+      shape.columns, shape.rows, kMostSamplesInOneMesh, kMostCellsPerSide + 1));
+}
+
+SampleField field_of(const HeightGrid& grid) {
+  SampleField field{grid.window.columns, grid.window.rows, {}};
+  field.heights_m.assign(grid.heights_m.begin(), grid.heights_m.end());
+  return field;
+}
+
+/// Every sample a vertex; those on the edge of the data are marked as outline.
+TerrainMesh full_terrain(const HeightGrid& grid, const hierarchy::Placer& placer) {
+  hierarchy::GridTriangles full = hierarchy::triangulate(grid, grid.window);
+  TerrainMesh terrain{{}, std::move(full.triangles)};
+  terrain.vertices.reserve(full.vertices.size());
+  for (const hierarchy::SampleId& sample : full.vertices) {
+    const GridPoint plan{sample.column * hierarchy::kUnitsPerCell,
+                         -sample.row * hierarchy::kUnitsPerCell};
+    terrain.vertices.push_back({.place = placer.place(plan, grid.at(sample.column, sample.row))});
+  }
+  const hierarchy::HalfedgeMesh mesh(static_cast<std::uint32_t>(full.vertices.size()),
+                                     terrain.triangles);
+  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+    if (!mesh.is_boundary(hierarchy::VertexId{v})) continue;
+    const std::uint32_t sample = mesh.origin(hierarchy::VertexId{v});
+    terrain.vertices[sample].kind = VertexKind::kOutline;
+    terrain.vertices[sample].sample = full.vertices[sample];
+  }
+  return terrain;
+}
+
+void judge(const GridError& error, std::int64_t samples, const SimplifyOptions& options) {
+  if (error.samples != samples || error.folded > 0) {
+    throw std::logic_error(fmt::format("{} of {} samples covered, {} triangles folded",
+                                       error.samples, samples, error.folded));
+  }
+  if (error.max_m <= options.tolerance_m) return;
+  throw ConfigError(
+      fmt::format("--tolerance {}: cannot be kept where heights are written in steps of {} m (the "
+                  "mesh is {:.3g} m off). Use a larger one, or write ply",
+                  options.tolerance_m, 1 / options.height_steps_per_m, error.max_m));
+}
+
+}  // namespace
+
+void check(const SimplifyOptions& options) {
+  if (!(options.tolerance_m > 0) || !std::isfinite(options.tolerance_m)) {
+    throw ConfigError(
+        fmt::format("--tolerance {}: must be a number of metres above 0", options.tolerance_m));
+  }
+}
+
+SimplifiedTerrain simplify(const HeightSource& heights, const SimplifyOptions& options,
+                           Progress& progress) {
+  check(options);
+  const GridShape shape = heights.shape();
+  check_size(shape);
+  const HeightGrid grid = heights.read({0, 0, shape.columns, shape.rows});
+  const FlatPlacer placer(options.height_steps_per_m);
+  const TerrainMesh full = full_terrain(grid, placer);
+  if (full.triangles.empty()) {
+    throw InputError(
+        "no three neighbouring samples of the DEM have data: there is no terrain. "
+        "Check --nodata");
+  }
+
+  progress.begin("simplify", 1);
+  const double wanted_m = std::max(options.tolerance_m - kRounding_m, options.tolerance_m / 2);
+  SimplifiedTerrain result;
+  result.input_triangles = std::ssize(full.triangles);
+  result.mesh =
+      hierarchy::collapse_strictly(full, field_of(grid), placer, {}, {.tolerance_m = wanted_m})
+          .mesh;
+  result.error = measure_over_grid(result.mesh, grid);
+  judge(result.error, std::ssize(full.vertices), options);
+  progress.advance(1);
+  return result;
+}
+
+}  // namespace terrane::tiler
