@@ -76,6 +76,14 @@ printf '{listed}'
         self.assertEqual(len(installs), 1)
         self.assertTrue(installs[0].endswith("libgdal-dev ninja-build"), installs)
 
+    def test_installs_what_only_the_peers_need_when_asked(self):
+        self.packages_installed(but=["libcgal-dev"])
+        self.run_script("setup")
+        self.assertEqual(self.recorded(), [])
+        self.run_script("setup", "--peers")
+        self.assertTrue(any("install" in line and "libcgal-dev" in line
+                            for line in self.recorded()))
+
     def test_says_which_step_failed(self):
         self.packages_installed(but=["ninja-build"])
         self.stand_in("apt-get", "#!/bin/sh\nexit 100\n")
