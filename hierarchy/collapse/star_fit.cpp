@@ -1,106 +1,245 @@
 #include "hierarchy/collapse/star_fit.h"
 
+#include <array>
+#include <cmath>
+#include <experimental/simd>
+#include <limits>
+
 namespace terrane::hierarchy {
 namespace {
 
-// the fit leaves samples outside alone, where weights are negative: is_within() has the last word
-constexpr double kOnEdge_cells = 1e-7;
+namespace stdx = std::experimental;
+// four lanes on every machine: sums then add up in the same order, and bytes do not depend on it
+using Lanes = stdx::simd<float, stdx::simd_abi::deduce_t<float, Star::kLanes>>;
+static_assert(Lanes::size() == Star::kLanes);
 
-/// value(column, row) of a function that is linear over a triangle.
-struct Plane {
-  double origin_column, origin_row, value, per_column, per_row;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-  double at(double column, double row) const {
-    return value + (column - origin_column) * per_column + (row - origin_row) * per_row;
+// below this weight the centre cannot mend what the fixed border of the star decides
+constexpr float kSmallestWeight = 1e-4F;
+
+Lanes load(const float* from) { return Lanes(from, stdx::element_aligned); }
+
+float sum(const Lanes& lanes) { return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]); }
+
+/// The spokes and sectors of a star around one centre.
+struct Spokes {
+  float* x;      // from the centre to the corners
+  float* y;      //
+  float* scale;  // 1 / twice the area of a sector
+
+  Spokes(const Star& star, std::vector<float>& memory) {
+    const std::size_t each = star.sector_count() + 2 * Star::kLanes;
+    if (memory.size() < 3 * each) memory.resize(6 * each);
+    x = memory.data();
+    y = x + each;
+    scale = y + each;
   }
-};
 
-Plane plane_through(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c) {
-  const double bx = b.column - a.column, by = b.row - a.row, bz = b.height_m - a.height_m;
-  const double cx = c.column - a.column, cy = c.row - a.row, cz = c.height_m - a.height_m;
-  const double scale = 1 / (bx * cy - by * cx);
-  return {a.column, a.row, a.height_m, (bz * cy - by * cz) * scale, (bx * cz - bz * cx) * scale};
-}
-
-/// Sums over the samples under a star whose centre has height z: the surface there is rest + w z.
-struct Feasible {
-  double lowest = -std::numeric_limits<double>::infinity();
-  double highest = std::numeric_limits<double>::infinity();
-  double ww = 0;  ///< sum of w^2
-  double wd = 0;  ///< sum of w (sample - rest)
-  double dd = 0;  ///< sum of (sample - rest)^2
-
-  // below this weight the centre cannot mend what the fixed border of the star decides
-  static constexpr double kSmallestWeight = 1e-9;
-
-  bool add(double weight, double difference, double tolerance) {
-    if (weight > kSmallestWeight) {
-      const double scale = 1 / weight;
-      lowest = std::max(lowest, (difference - tolerance) * scale);
-      highest = std::min(highest, (difference + tolerance) * scale);
-    } else if (std::abs(difference) > tolerance) {
-      return false;
+  /// \return false if the polygon does not see the centre, or a sector is too thin.
+  bool set(const Star& star, Star::Centre centre, float smallest_altitude) {
+    const std::size_t count = star.sector_count();
+    for (std::size_t k = 0; k <= count; k += Star::kLanes) {
+      (load(star.corner_x() + k) - centre.x).copy_to(x + k, stdx::element_aligned);
+      (load(star.corner_y() + k) - centre.y).copy_to(y + k, stdx::element_aligned);
     }
-    ww += weight * weight;
-    wd += weight * difference;
-    dd += difference * difference;
+    const float altitude2 = smallest_altitude * smallest_altitude;
+    const Lanes lane([](auto k) { return static_cast<float>(k); });
+    for (std::size_t k = 0; k < count; k += Star::kLanes) {
+      const Lanes ax = load(x + k), ay = load(y + k), bx = load(x + k + 1), by = load(y + k + 1);
+      const Lanes area = ax * by - ay * bx;
+      const Lanes dx = bx - ax, dy = by - ay;
+      const Lanes longest2 =
+          stdx::max(stdx::max(ax * ax + ay * ay, bx * bx + by * by), dx * dx + dy * dy);
+      const auto is_bad = area <= 0.0F || area * area < longest2 * altitude2;
+      if (stdx::any_of(is_bad && lane < static_cast<float>(count - k))) return false;
+      (1.0F / area).copy_to(scale + k, stdx::element_aligned);
+    }
     return true;
   }
 };
 
-bool add_triangle(const FieldPoint& centre, const StarSide& side, const SampleField& field,
-                  double tolerance_m, Feasible& feasible) {
-  const Plane weight =
-      plane_through({centre.column, centre.row, 1}, {side.from.column, side.from.row, 0},
-                    {side.to.column, side.to.row, 0});
-  const Plane rest = plane_through({centre.column, centre.row, 0}, side.from, side.to);
-  return for_each_span(
-      centre, side.from, side.to, field, kOnEdge_cells,
-      [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-        const double* heights = field.row(row);
-        for (std::int64_t column = first; column <= last; ++column) {
-          if (std::isnan(heights[column])) continue;
-          const auto x = static_cast<double>(column), y = static_cast<double>(row);
-          if (!feasible.add(weight.at(x, y), heights[column] - rest.at(x, y), tolerance_m)) {
-            return false;
-          }
-        }
-        return feasible.lowest <= feasible.highest;
-      });
+/// What decides on four samples: their sector, and the cross products with its two spokes.
+struct Located {
+  Lanes before, after;
+  std::array<std::size_t, Star::kLanes> sector;
+};
+
+/// A sample that lies in no sector, by rounding beside an open fan: in the first or in the last.
+void put_beside(const Star& star, const Spokes& spokes, float x, float y, std::size_t lane,
+                Located& at) {
+  const std::size_t last = star.sector_count() - 1;
+  const auto along = [&](std::size_t k) {
+    return (spokes.x[k] * x + spokes.y[k] * y) / std::hypot(spokes.x[k], spokes.y[k]);
+  };
+  const auto cross = [&](std::size_t k) { return spokes.x[k] * y - spokes.y[k] * x; };
+  const std::size_t sector = along(0) > along(last + 1) ? 0 : last;
+  at.sector[lane] = sector;
+  at.before[lane] = cross(sector);
+  at.after[lane] = cross(sector + 1);
+}
+
+Located locate(const Star& star, const Spokes& spokes, const Lanes& x, const Lanes& y) {
+  Located at{0.0F, 0.0F, {}};
+  typename Lanes::mask_type found(false);
+  Lanes before = spokes.x[0] * y - spokes.y[0] * x;
+  Lanes sector(0.0F), index(0.0F);
+  for (std::size_t k = 0; k < star.sector_count(); ++k) {
+    const Lanes after = spokes.x[k + 1] * y - spokes.y[k + 1] * x;
+    const auto inside = before >= 0.0F && after < 0.0F;
+    stdx::where(inside, at.before) = before;
+    stdx::where(inside, at.after) = after;
+    stdx::where(inside, sector) = index;
+    found = found || inside;
+    before = after;
+    index += 1.0F;
+  }
+  for (std::size_t lane = 0; lane < Star::kLanes; ++lane) {
+    at.sector[lane] = static_cast<std::size_t>(sector[lane]);
+  }
+  // of a closed fan, only the centre itself is in no sector; the zeros above are right for it
+  if (!star.is_closed() && !stdx::all_of(found)) {
+    for (std::size_t lane = 0; lane < Star::kLanes; ++lane) {
+      if (!found[lane]) put_beside(star, spokes, x[lane], y[lane], lane, at);
+    }
+  }
+  return at;
 }
 
 }  // namespace
 
-std::optional<StarHeight> fit_star(double column, double row, std::span<const StarSide> sides,
-                                   const SampleField& field, double tolerance_m,
-                                   double fallback_m) {
-  const FieldPoint centre{column, row, 0};
-  Feasible feasible;
-  for (const StarSide& side : sides) {
-    if (!add_triangle(centre, side, field, tolerance_m, feasible)) return std::nullopt;
+StarVerdict StarJudge::fit(const Star& star, Star::Centre centre, float tolerance_m,
+                           float smallest_altitude_cells, StarHeights& heights) {
+  Spokes spokes(star, spokes_);
+  if (!spokes.set(star, centre, smallest_altitude_cells)) return StarVerdict::kNotStarShaped;
+
+  Lanes lowest(-kInfinity), highest(kInfinity), ww(0.0F), wd(0.0F), dd(0.0F);
+  const std::size_t count = star.sample_count();
+  for (std::size_t first = 0; first < count; first += Star::kLanes) {
+    const Lanes x = load(star.sample_x() + first) - centre.x;
+    const Lanes y = load(star.sample_y() + first) - centre.y;
+    const Located at = locate(star, spokes, x, y);
+    const Lanes scale([&](auto lane) { return spokes.scale[at.sector[lane]]; });
+    const Lanes z([&](auto lane) { return star.corner_z()[at.sector[lane]]; });
+    const Lanes next_z([&](auto lane) { return star.corner_z()[at.sector[lane] + 1]; });
+
+    const Lanes of_corner = -at.after * scale, of_next = at.before * scale;
+    Lanes weight = 1.0F - of_corner - of_next;
+    Lanes difference = load(star.sample_z() + first) - of_corner * z - of_next * next_z;
+    if (first + Star::kLanes > count) {
+      const Lanes lane([](auto k) { return static_cast<float>(k); });
+      const auto is_padding = lane >= static_cast<float>(count - first);
+      stdx::where(is_padding, weight) = 0.0F;
+      stdx::where(is_padding, difference) = 0.0F;
+    }
+    const auto decides = weight > kSmallestWeight;
+    const Lanes per_weight = 1.0F / weight;
+    stdx::where(decides, lowest) = stdx::max(lowest, (difference - tolerance_m) * per_weight);
+    stdx::where(decides, highest) = stdx::min(highest, (difference + tolerance_m) * per_weight);
+    if (stdx::any_of(lowest > highest)) return StarVerdict::kOverTolerance;
+    ww += weight * weight;
+    wd += weight * difference;
+    dd += difference * difference;
   }
-  StarHeight best{.lowest_m = feasible.lowest, .highest_m = feasible.highest};
-  const double wished = feasible.ww > 0 ? feasible.wd / feasible.ww : fallback_m;
-  best.height_m = std::clamp(wished, feasible.lowest, feasible.highest);
-  const double z = best.height_m;
-  best.squared_error_m2 = feasible.dd - 2 * z * feasible.wd + z * z * feasible.ww;
-  return best;
+  heights.lowest = stdx::hmax(lowest);
+  heights.highest = stdx::hmin(highest);
+  if (heights.lowest > heights.highest) return StarVerdict::kOverTolerance;
+  const float weights = sum(ww), wished = weights > 0 ? sum(wd) / weights : 0;
+  heights.best = std::clamp(wished, heights.lowest, heights.highest);
+  heights.squared_error =
+      sum(dd) - 2 * heights.best * sum(wd) + heights.best * heights.best * weights;
+  return StarVerdict::kFeasible;
+}
+
+namespace {
+
+/// The star around a written place, in double precision.
+class ExactStar {
+ public:
+  ExactStar(const Star& star, const Place& centre) : star_(star), centre_(centre) {}
+
+  /// Height of the star at a place, counted from its centre in grid units.
+  /// \param[in,out] sector  a guess; where the place is found to be.
+  double height_m(double x, double y, std::size_t& sector) const {
+    const std::size_t count = star_.sector_count();
+    for (std::size_t steps = 0;; ++steps) {
+      const Spoke from = spoke(sector), to = spoke(sector + 1);
+      const double scale = 1 / (from.x * to.y - from.y * to.x);
+      const double of_next = (from.x * y - from.y * x) * scale;
+      const double of_corner = (x * to.y - y * to.x) * scale;
+      std::size_t neighbour = sector;
+      if (of_next < 0 && (sector > 0 || star_.is_closed())) {
+        neighbour = sector > 0 ? sector - 1 : count - 1;
+      } else if (of_corner < 0 && (sector + 1 < count || star_.is_closed())) {
+        neighbour = sector + 1 < count ? sector + 1 : 0;
+      }
+      if (neighbour == sector || steps > count) {
+        return (1 - of_next - of_corner) * centre_.height_m +
+               of_corner * star_.corner(sector).height_m +
+               of_next * star_.corner(sector + 1).height_m;
+      }
+      sector = neighbour;
+    }
+  }
+
+ private:
+  struct Spoke {
+    double x, y;
+  };
+  Spoke spoke(std::size_t k) const {
+    const GridPoint corner = star_.corner(k).plan;
+    return {static_cast<double>(corner.x) - centre_.plan.x,
+            static_cast<double>(corner.y) - centre_.plan.y};
+  }
+
+  const Star& star_;
+  const Place& centre_;
+};
+
+}  // namespace
+
+bool StarJudge::holds(const Star& star, const Place& centre, const CoveredSamples& samples,
+                      double tolerance_m) {
+  Spokes spokes(star, spokes_);
+  const Star::Centre at = star.centre(centre.plan);
+  if (!spokes.set(star, at, 0)) return false;
+  const ExactStar exact(star, centre);
+
+  if (sectors_.size() < star.sample_count()) sectors_.resize(2 * star.sample_count());
+  for (std::size_t first = 0; first < star.sample_count(); first += Star::kLanes) {
+    const Located located = locate(star, spokes, load(star.sample_x() + first) - at.x,
+                                   load(star.sample_y() + first) - at.y);
+    const std::size_t end = std::min(first + Star::kLanes, star.sample_count());
+    for (std::size_t k = first; k < end; ++k) {
+      const CoveredSample& sample = samples[star.sample(k)];
+      auto sector = located.sector[k - first];
+      const double z = exact.height_m(double{sample.column} * kUnitsPerCell - centre.plan.x,
+                                      -double{sample.row} * kUnitsPerCell - centre.plan.y, sector);
+      if (!(std::abs(z - sample.height_m) <= tolerance_m)) return false;
+      sectors_[k] = static_cast<std::uint32_t>(sector);
+    }
+  }
+  return true;
 }
 
 bool is_within(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
                const SampleField& field, double tolerance_m) {
-  const Plane plane = plane_through(a, b, c);
-  return for_each_span(a, b, c, field, field.slack_cells,
-                       [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-                         const double* heights = field.row(row);
-                         for (std::int64_t column = first; column <= last; ++column) {
-                           const double z =
-                               plane.at(static_cast<double>(column), static_cast<double>(row));
-                           // written so that NaN, no data, passes
-                           if (std::abs(z - heights[column]) > tolerance_m) return false;
-                         }
-                         return true;
-                       });
+  const double bx = b.column - a.column, by = b.row - a.row, bz = b.height_m - a.height_m;
+  const double cx = c.column - a.column, cy = c.row - a.row, cz = c.height_m - a.height_m;
+  const double scale = 1 / (bx * cy - by * cx);
+  const double per_column = (bz * cy - by * cz) * scale, per_row = (bx * cz - bz * cx) * scale;
+  return for_each_span(
+      a, b, c, field, field.slack_cells,
+      [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+        const double* heights = field.row(row);
+        const double at_row = a.height_m + (static_cast<double>(row) - a.row) * per_row;
+        for (std::int64_t column = first; column <= last; ++column) {
+          const double z = at_row + (static_cast<double>(column) - a.column) * per_column;
+          // written so that NaN, no data, passes
+          if (std::abs(z - heights[column]) > tolerance_m) return false;
+        }
+        return true;
+      });
 }
 
 }  // namespace terrane::hierarchy

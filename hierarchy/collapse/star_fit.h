@@ -1,34 +1,52 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
-#include <span>
+#include <vector>
 
 #include "hierarchy/collapse/sample_field.h"
+#include "hierarchy/collapse/star.h"
 
 namespace terrane::hierarchy {
 
-/// One side of the boundary polygon that a star is built on, counter-clockwise.
-struct StarSide {
-  FieldPoint from;
-  FieldPoint to;
+/// The heights of a star's centre that keep it near the samples, in metres over Star::origin().
+struct StarHeights {
+  float lowest = 0;  ///< the feasible interval; infinite where no sample decides
+  float highest = 0;
+  float best = 0;           ///< least squares, moved into the interval
+  float squared_error = 0;  ///< sum over the samples at best, in square metres
 };
 
-/// The best height for the centre of a star.
-struct StarHeight {
-  double height_m = 0;  ///< least squares, moved into the feasible interval
-  double lowest_m = 0;  ///< the feasible interval
-  double highest_m = 0;
-  double squared_error_m2 = 0;  ///< sum over the samples under the star, at height_m
+enum class StarVerdict : std::uint8_t {
+  kFeasible,
+  kNotStarShaped,  ///< the polygon does not see the centre, or a triangle would be too thin
+  kOverTolerance,  ///< no height keeps the bound
 };
 
-/// Finds the heights of the centre for which the star stays within the tolerance of every sample
-/// under it, and the best of them.
-///
-/// \param column, row  plan of the centre, in cells.
-/// \param fallback_m   height to take where no sample lies under the star.
-/// \return nothing if there is no such height.
-std::optional<StarHeight> fit_star(double column, double row, std::span<const StarSide> sides,
-                                   const SampleField& field, double tolerance_m, double fallback_m);
+/// Judges the stars that may replace a stencil. Keeps its scratch space from call to call.
+class StarJudge {
+ public:
+  /// Finds the heights of a centre for which the star stays within the tolerance of every sample
+  /// under it: in single precision and four samples at once, so holds() has the last word.
+  ///
+  /// \param smallest_altitude_cells  of any triangle of the star, in plan.
+  /// \param[out] heights             written if feasible.
+  StarVerdict fit(const Star& star, Star::Centre centre, float tolerance_m,
+                  float smallest_altitude_cells, StarHeights& heights);
+
+  /// Is the star around a written place within the tolerance of every sample under it? In double
+  /// precision.
+  /// \pre the polygon sees the place.
+  bool holds(const Star& star, const Place& centre, const CoveredSamples& samples,
+             double tolerance_m);
+
+  /// The sector that a sample of the star is in, around the place that last held.
+  std::uint32_t sector(std::size_t sample) const { return sectors_[sample]; }
+
+ private:
+  std::vector<float> spokes_;  // see Spokes in the source
+  std::vector<std::uint32_t> sectors_;
+};
 
 /// Is the triangle within the tolerance of every sample under it?
 bool is_within(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,

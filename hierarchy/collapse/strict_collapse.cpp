@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "hierarchy/collapse/boundary_rule.h"
 #include "hierarchy/collapse/morph_guard.h"
@@ -10,9 +11,15 @@
 namespace terrane::hierarchy {
 namespace {
 
-FieldPoint field_point(const Place& place) {
-  return {column_of(place.plan), row_of(place.plan), place.height_m};
-}
+// shares that were best on St. Helens from 1 to 20 m (docs/benchmarks.md, Choices)
+constexpr double kTriangleShare = 0.8;
+constexpr float kIntervalMargin = 0.2F;
+
+// triangles in a row: with their samples they fit a second-level cache
+constexpr std::uint32_t kBlock = 8192;
+
+// a sweep that collapses less than one in this many triangles is the last
+constexpr std::int64_t kTooFew = 500;
 
 double squared_length(GridPoint a, GridPoint b) {
   const double x = static_cast<double>(b.x) - a.x, y = static_cast<double>(b.y) - a.y;
@@ -22,8 +29,9 @@ double squared_length(GridPoint a, GridPoint b) {
 /// A place worth trying for the new vertex.
 struct Candidate {
   GridPoint plan;
-  double height_m = 0;  ///< to keep, if is_fixed; else what to take where no sample decides
-  bool is_fixed = false;
+  double height_m = 0;  ///< what to take where no sample decides
+  StarHeights heights;
+  bool is_rejected = false;
 };
 
 class StrictCollapse {
@@ -33,9 +41,10 @@ class StrictCollapse {
       : mesh_(static_cast<std::uint32_t>(input.vertices.size()), input.triangles),
         vertices_(split_like(mesh_, input.vertices)),
         walker_(mesh_),
-        field_(field),
         placer_(placer),
         options_(options),
+        smallest_altitude_cells_(static_cast<float>(options.smallest_altitude_cells)),
+        samples_(field, vertices_, mesh_.triangles(), mesh_.triangle_count()),
         changed_(vertices_.size(), 0),
         tested_(mesh_.triangle_count() * 3, 0) {
     for (std::uint32_t v = 0; v < vertices_.size(); ++v) {
@@ -51,10 +60,12 @@ class StrictCollapse {
   }
 
   StrictResult run(std::size_t given_vertices) {
-    while (sweep_triangles() > worth_another_sweep()) {
-    }
-    while (sweep_edges() > worth_another_sweep()) {
-    }
+    // triangles leave slack for the edges, which come last
+    tolerance_m_ = kTriangleShare * options_.tolerance_m;
+    sweep([this](std::uint32_t triangle) { return sweep_triangle(TriangleId{triangle}); });
+    tolerance_m_ = options_.tolerance_m;
+    std::ranges::fill(tested_, 0);
+    sweep([this](std::uint32_t triangle) { return sweep_edges(TriangleId{triangle}); });
     return finish(given_vertices);
   }
 
@@ -68,41 +79,61 @@ class StrictCollapse {
     return all;
   }
 
-  std::int64_t worth_another_sweep() const { return mesh_.live_triangle_count() / 500; }
-
-  std::int64_t sweep_triangles() {
-    const std::int64_t before = result_.triangle_collapses;
-    ++sweep_;
-    for (std::uint32_t i = 0; i < mesh_.triangle_count(); ++i) {
-      const TriangleId t{i};
-      if (!mesh_.is_live(t) || mesh_.is_ghost(t)) continue;
-      std::uint32_t newest = 0;
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        newest = std::max(newest, changed_[index(mesh_.start(HalfedgeMesh::halfedge(t, k)))]);
+  /// Visits all triangles, block by block so that a block stays in the cache, until it is not worth
+  /// another time. \p visit tells how many collapses it made.
+  template <class Visit>
+  void sweep(const Visit& visit) {
+    std::int64_t done = 0;
+    do {
+      done = 0;
+      for (std::uint32_t first = 0; first < mesh_.triangle_count(); first += kBlock) {
+        done += sweep_block(first, std::min(first + kBlock, mesh_.triangle_count()), visit);
       }
-      if (!is_due(tested_[i], newest)) continue;
-      result_.triangle_collapses += count(try_collapse(walker_.around_triangle(t, stencil_)));
-    }
-    return result_.triangle_collapses - before;
+    } while (done > mesh_.live_triangle_count() / kTooFew);
   }
 
-  std::int64_t sweep_edges() {
-    const std::int64_t before = result_.edge_collapses;
-    if (!edges_begun_) std::ranges::fill(tested_, 0);
-    edges_begun_ = true;
-    ++sweep_;
-    for (std::uint32_t i = 0; i < mesh_.triangle_count() * 3; ++i) {
-      const HalfedgeId h{i};
-      if (!mesh_.is_live(HalfedgeMesh::triangle(h))) continue;
-      // each edge once, from the side with the smaller id
-      if (index(mesh_.opposite(h)) < i) continue;
-      if (mesh_.is_ghost(mesh_.start(h)) || mesh_.is_ghost(mesh_.end(h))) continue;
+  template <class Visit>
+  std::int64_t sweep_block(std::uint32_t first, std::uint32_t end, const Visit& visit) {
+    block_.resize(end - first);
+    std::iota(block_.begin(), block_.end(), first);
+    std::int64_t all = 0;
+    for (;;) {
+      ++sweep_;
+      std::int64_t done = 0;
+      std::size_t live = 0;
+      for (const std::uint32_t t : block_) {
+        if (!mesh_.is_live(TriangleId{t}) || mesh_.is_ghost(TriangleId{t})) continue;
+        block_[live++] = t;
+        done += visit(t);
+      }
+      block_.resize(live);
+      all += done;
+      if (done <= static_cast<std::int64_t>(live) / kTooFew) return all;
+    }
+  }
+
+  std::int64_t sweep_triangle(TriangleId t) {
+    std::uint32_t newest = 0;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      newest = std::max(newest, changed_[index(mesh_.start(HalfedgeMesh::halfedge(t, k)))]);
+    }
+    if (!is_due(tested_[index(t)], newest)) return 0;
+    return count(try_collapse(walker_.around_triangle(t, stencil_)), result_.triangle_collapses);
+  }
+
+  std::int64_t sweep_edges(TriangleId t) {
+    std::int64_t done = 0;
+    for (std::uint32_t k = 0; k < 3 && mesh_.is_live(t); ++k) {
+      const HalfedgeId h = HalfedgeMesh::halfedge(t, k);
+      const TriangleId across = HalfedgeMesh::triangle(mesh_.opposite(h));
+      // each edge once, from the side with the smaller id; ghosts have the largest
+      if (across < t) continue;
       const std::uint32_t newest =
           std::max(changed_[index(mesh_.start(h))], changed_[index(mesh_.end(h))]);
-      if (!is_due(tested_[i], newest)) continue;
-      result_.edge_collapses += count(try_collapse(walker_.around_edge(h, stencil_)));
+      if (!is_due(tested_[index(h)], newest)) continue;
+      done += count(try_collapse(walker_.around_edge(h, stencil_)), result_.edge_collapses);
     }
-    return result_.edge_collapses - before;
+    return done;
   }
 
   /// Not yet tried since its corners changed, and not next to a collapse of this sweep.
@@ -113,32 +144,26 @@ class StrictCollapse {
     return true;
   }
 
-  std::int64_t count(Collapsibility verdict) {
+  std::int64_t count(Collapsibility verdict, std::int64_t& collapses) {
     ++result_.refusals[static_cast<std::size_t>(verdict)];
-    return verdict == Collapsibility::kYes ? 1 : 0;
+    if (verdict != Collapsibility::kYes) return 0;
+    ++collapses;
+    return 1;
   }
 
   Collapsibility try_collapse(Collapsibility complete) {
     if (complete != Collapsibility::kYes) return complete;
     const BoundaryVerdict boundary = classify(stencil_, mesh_, vertices_, placer_);
     if (boundary.type == BoundaryType::kFixed) return Collapsibility::kBoundary;
-    list_candidates(boundary);
-    list_sides();
-
-    const auto best = best_place();
+    const auto best = best_place(boundary);
     if (!best) return refusal_;
     if (guard_ && !guard_->allows(stencil_.core_span(), *best)) return Collapsibility::kMorph;
     commit(*best, boundary.onto.value_or(stencil_.core[0]));
     return Collapsibility::kYes;
   }
 
-  void list_candidates(const BoundaryVerdict& boundary) {
+  void list_candidates() {
     candidates_.clear();
-    if (boundary.onto) {
-      const Place& place = vertices_[index(*boundary.onto)].place;
-      candidates_.push_back({place.plan, place.height_m, true});
-      return;
-    }
     std::int64_t x = 0, y = 0;
     double height_m = 0;
     for (const VertexId v : stencil_.core_span()) {
@@ -146,85 +171,84 @@ class StrictCollapse {
       x += place.plan.x;
       y += place.plan.y;
       height_m += place.height_m;
-      candidates_.push_back({place.plan, place.height_m, false});
+      candidates_.push_back({place.plan, place.height_m});
     }
     const std::int64_t n = stencil_.core_size;
     candidates_.push_back({{static_cast<std::int32_t>(x / n), static_cast<std::int32_t>(y / n)},
-                           height_m / static_cast<double>(n),
-                           false});
+                           height_m / static_cast<double>(n)});
   }
 
-  void list_sides() {
-    sides_.clear();
-    plan_sides_.clear();
-    const auto& polygon = stencil_.polygon;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const VertexId a = polygon[i], b = polygon[(i + 1) % polygon.size()];
-      if (mesh_.is_ghost(a) || mesh_.is_ghost(b)) continue;
-      const Place& from = vertices_[index(a)].place;
-      const Place& to = vertices_[index(b)].place;
-      sides_.push_back({field_point(from), field_point(to)});
-      plan_sides_.push_back({from.plan, to.plan});
-    }
-  }
-
-  /// The candidate with the least squared error; refusal_ says why if there is none.
-  std::optional<Place> best_place() {
-    std::optional<Place> best;
-    double best_error = std::numeric_limits<double>::infinity();
+  /// Where the core may go; refusal_ says why if nowhere.
+  std::optional<Place> best_place(const BoundaryVerdict& boundary) {
+    star_.gather(stencil_, mesh_, vertices_, samples_);
     refusal_ = Collapsibility::kNotStarShaped;
-    for (const Candidate& candidate : candidates_) {
-      if (!is_star_shaped(candidate.plan)) continue;
-      refusal_ = Collapsibility::kOverTolerance;
-      const auto fit = fit_star(column_of(candidate.plan), row_of(candidate.plan), sides_, field_,
-                                options_.tolerance_m, candidate.height_m);
-      if (!fit || fit->squared_error_m2 >= best_error) continue;
-      const std::optional<Place> place = written(candidate, *fit);
-      if (!place) continue;
-      best = place;
-      best_error = fit->squared_error_m2;
+    if (boundary.onto) return onto_line(vertices_[index(*boundary.onto)].place);
+
+    list_candidates();
+    for (Candidate& candidate : candidates_) {
+      candidate.is_rejected = !fit(candidate.plan, candidate.heights);
+    }
+    while (Candidate* best = least_squared_error()) {
+      if (const std::optional<Place> place = written(*best)) return place;
+      best->is_rejected = true;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Place> onto_line(const Place& place) {
+    StarHeights heights;
+    if (!fit(place.plan, heights) || !is_star_shaped(place.plan)) return std::nullopt;
+    refusal_ = Collapsibility::kOverTolerance;
+    if (!judge_.holds(star_, place, samples_, tolerance_m_)) return std::nullopt;
+    return place;
+  }
+
+  bool fit(GridPoint plan, StarHeights& heights) {
+    const StarVerdict verdict =
+        judge_.fit(star_, star_.centre(plan), static_cast<float>(tolerance_m_),
+                   smallest_altitude_cells_, heights);
+    if (verdict != StarVerdict::kNotStarShaped) refusal_ = Collapsibility::kOverTolerance;
+    return verdict == StarVerdict::kFeasible;
+  }
+
+  Candidate* least_squared_error() {
+    Candidate* best = nullptr;
+    for (Candidate& candidate : candidates_) {
+      if (candidate.is_rejected) continue;
+      if (best && candidate.heights.squared_error >= best->heights.squared_error) continue;
+      best = &candidate;
     }
     return best;
   }
 
   /// The place that will be written for a candidate, if it holds what the wished place promised.
-  std::optional<Place> written(const Candidate& candidate, const StarHeight& fit) const {
-    if (candidate.is_fixed) {
-      const Place& kept = *fixed_place(candidate.plan);
-      return star_holds(kept) ? std::optional(kept) : std::nullopt;
-    }
-    const Place rounded = placer_.place(candidate.plan, fit.height_m);
-    if (!is_star_shaped(rounded.plan) || !star_holds(rounded)) return std::nullopt;
-    return rounded;
+  std::optional<Place> written(const Candidate& candidate) {
+    const Place place = placer_.place(candidate.plan, wished_height_m(candidate));
+    if (!is_star_shaped(place.plan)) return std::nullopt;
+    if (!judge_.holds(star_, place, samples_, tolerance_m_)) return std::nullopt;
+    return place;
   }
 
-  const Place* fixed_place(GridPoint plan) const {
-    for (const VertexId v : stencil_.core_span()) {
-      const TerrainVertex& vertex = vertices_[index(v)];
-      if (vertex.kind != VertexKind::kInterior && vertex.place.plan == plan) return &vertex.place;
-    }
-    return nullptr;
-  }
-
-  bool star_holds(const Place& centre) const {
-    const FieldPoint c = field_point(centre);
-    return std::ranges::all_of(sides_, [&](const StarSide& side) {
-      return is_within(c, side.from, side.to, field_, options_.tolerance_m);
-    });
+  double wished_height_m(const Candidate& candidate) const {
+    const auto& [lowest, highest, best, squared_error] = candidate.heights;
+    if (!std::isfinite(highest - lowest)) return candidate.height_m;
+    const float margin = kIntervalMargin * (highest - lowest);
+    return star_.origin().height_m + std::clamp(best, lowest + margin, highest - margin);
   }
 
   bool is_star_shaped(GridPoint centre) const {
-    return std::ranges::all_of(plan_sides_, [&](const std::pair<GridPoint, GridPoint>& side) {
-      const std::int64_t area = orient2d(centre, side.first, side.second);
+    for (std::size_t k = 0; k < star_.sector_count(); ++k) {
+      const GridPoint from = star_.corner(k).plan, to = star_.corner(k + 1).plan;
+      const std::int64_t area = orient2d(centre, from, to);
       if (area <= 0) return false;
       // altitude = twice the area / longest side; squared, as roots took a quarter of all the time
-      const double longest2 =
-          std::max({squared_length(centre, side.first), squared_length(centre, side.second),
-                    squared_length(side.first, side.second)});
+      const double longest2 = std::max(
+          {squared_length(centre, from), squared_length(centre, to), squared_length(from, to)});
       const double altitude = options_.smallest_altitude_cells * kUnitsPerCell;
       const auto twice_area = static_cast<double>(area);
-      return twice_area * twice_area >= longest2 * altitude * altitude;
-    });
+      if (twice_area * twice_area < longest2 * altitude * altitude) return false;
+    }
+    return true;
   }
 
   void commit(const Place& place, VertexId kept) {
@@ -233,11 +257,19 @@ class StrictCollapse {
     } else {
       for (const VertexId v : stencil_.core_span()) parent_[index(v)] = kept;
     }
+    hand_over_samples();
     mesh_.collapse(stencil_.spokes, stencil_.dying_span(), kept);
     vertices_[index(kept)].place = place;
     changed_[index(kept)] = sweep_;
     for (const VertexId v : stencil_.polygon) {
       if (!mesh_.is_ghost(v)) changed_[index(v)] = sweep_;
+    }
+  }
+
+  void hand_over_samples() {
+    for (std::size_t k = 0; k < star_.sector_count(); ++k) samples_.clear(star_.triangle(k));
+    for (std::size_t k = 0; k < star_.sample_count(); ++k) {
+      samples_.add(star_.triangle(judge_.sector(k)), star_.sample(k));
     }
   }
 
@@ -273,21 +305,23 @@ class StrictCollapse {
   HalfedgeMesh mesh_;
   std::vector<TerrainVertex> vertices_;
   StencilWalker walker_;
-  const SampleField& field_;
   const Placer& placer_;
   const StrictOptions& options_;
+  float smallest_altitude_cells_;
+  CoveredSamples samples_;
   std::optional<MorphGuard> guard_;
   std::vector<VertexId> parent_;  // level 0 only: where a vertex went, to be followed
 
+  double tolerance_m_ = 0;  // of this sweep
   std::uint32_t sweep_ = 0;
-  bool edges_begun_ = false;
   std::vector<std::uint32_t> changed_;  // sweep that last changed the surroundings of a vertex
   std::vector<std::uint32_t> tested_;   // sweep that last tried a triangle, later a half-edge
 
+  std::vector<std::uint32_t> block_;
   Stencil stencil_;
   std::vector<Candidate> candidates_;
-  std::vector<StarSide> sides_;
-  std::vector<std::pair<GridPoint, GridPoint>> plan_sides_;
+  Star star_;
+  StarJudge judge_;
   Collapsibility refusal_ = Collapsibility::kYes;
   StrictResult result_;
 };

@@ -4,21 +4,33 @@
 
 #include <algorithm>
 #include <cassert>
-#include <tuple>
+#include <numeric>
 
 #include "core/errors.h"
 
 namespace terrane::hierarchy {
 namespace {
 
-struct DirectedEdge {
-  std::uint32_t low, high;
-  HalfedgeId halfedge;
-
-  bool operator<(const DirectedEdge& other) const {
-    return std::tie(low, high, halfedge) < std::tie(other.low, other.high, other.halfedge);
+/// The half-edges that start at each vertex.
+class Outgoing {
+ public:
+  Outgoing(std::uint32_t vertex_count, const IdVector<HalfedgeId, VertexId>& start)
+      : begin_(vertex_count + 1, 0), halfedges_(start.size()) {
+    for (const VertexId v : start) ++begin_[index(v) + 1];
+    std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+    std::vector<std::uint32_t> free(begin_.begin(), begin_.end() - 1);
+    for (std::uint32_t i = 0; i < start.size(); ++i) {
+      halfedges_[free[index(start[HalfedgeId{i}])]++] = HalfedgeId{i};
+    }
   }
-  bool same_edge(const DirectedEdge& other) const { return low == other.low && high == other.high; }
+
+  std::span<const HalfedgeId> of(VertexId v) const {
+    return std::span(halfedges_).subspan(begin_[index(v)], begin_[index(v) + 1] - begin_[index(v)]);
+  }
+
+ private:
+  std::vector<std::uint32_t> begin_;
+  std::vector<HalfedgeId> halfedges_;
 };
 
 void check_corners(std::span<const Corners> triangles, std::uint32_t vertex_count) {
@@ -59,29 +71,19 @@ HalfedgeMesh::HalfedgeMesh(std::uint32_t vertex_count, std::span<const Corners> 
 }
 
 void HalfedgeMesh::pair_edges() {
-  std::vector<DirectedEdge> edges;
-  edges.reserve(start_.size());
+  const Outgoing outgoing(vertex_count_, start_);
+  const auto count = [&](VertexId from, VertexId to) {
+    return std::ranges::count_if(outgoing.of(from), [&](HalfedgeId h) { return end(h) == to; });
+  };
   for (std::uint32_t i = 0; i < start_.size(); ++i) {
     const HalfedgeId h{i};
-    const auto [low, high] =
-        std::minmax({static_cast<std::uint32_t>(start(h)), static_cast<std::uint32_t>(end(h))});
-    edges.push_back({low, high, h});
-  }
-  std::sort(edges.begin(), edges.end());
-
-  for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-    const DirectedEdge& a = edges[i];
-    const DirectedEdge& b = edges[i + 1];
-    if (!a.same_edge(b)) continue;
-    const bool third = i + 2 < edges.size() && b.same_edge(edges[i + 2]);
-    if (third || start(a.halfedge) == start(b.halfedge)) {
-      throw TopologyError(fmt::format(
-          "edge {}-{}: has more than two triangles, or two that do not agree in orientation", a.low,
-          a.high));
-    }
-    opposite_[a.halfedge] = b.halfedge;
-    opposite_[b.halfedge] = a.halfedge;
-    ++i;
+    const auto there = outgoing.of(end(h));
+    const auto back = std::ranges::find(there, start(h), [&](HalfedgeId b) { return end(b); });
+    if (back != there.end()) opposite_[h] = *back;
+    if (count(start(h), end(h)) == 1) continue;
+    throw TopologyError(fmt::format(
+        "edge {}-{}: has more than two triangles, or two that do not agree in orientation",
+        std::min(index(start(h)), index(end(h))), std::max(index(start(h)), index(end(h)))));
   }
 }
 
