@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "core/errors.h"
 
@@ -49,11 +50,9 @@ TetraMesh::TetraMesh(const Box& box) : box_(box) {
   make_roots();
 }
 
-// Kuhn's triangulation of the cube: a root for each order of the axes, walked from (0,0,0) to
-// (1,1,1). Corner number k of the cube has bit a of k along axis a.
+// A root for each order of the axes, walked from (0,0,0) to (1,1,1). Corner number k of the cube
+// has bit a of k along axis a.
 void TetraMesh::make_roots() {
-  static constexpr std::array<std::array<int, 3>, kRoots> kAxes = {
-      {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
   nodes_.resize(8);
   for (std::uint32_t k = 0; k < 8; ++k) {
     for (int axis = 0; axis < 3; ++axis) nodes_[k].lattice[axis] = (k >> axis & 1) * kFullEdge;
@@ -134,6 +133,32 @@ std::vector<CellId> TetraMesh::leaves_in_tree_order() const {
   return leaves;
 }
 
+// In a cell whose split edge ends at corners 0 and d, a place lies in the half of that end which
+// weighs more; the middle takes twice the lesser weight.
+TetraMesh::Located TetraMesh::locate(const Eigen::Vector3d& p) const {
+  const Eigen::Vector3d t = (p - box_.low).cwiseQuotient(box_.size()).cwiseMax(0.0).cwiseMin(1.0);
+  const auto root = std::ranges::find_if(kAxes, [&](const auto& axes) {
+    return t[axes[0]] >= t[axes[1]] && t[axes[1]] >= t[axes[2]];
+  });
+  const auto& axes = *root;
+  Eigen::Vector4d w(1 - t[axes[0]], t[axes[0]] - t[axes[1]], t[axes[1]] - t[axes[2]], t[axes[2]]);
+  CellId cell{static_cast<std::uint32_t>(root - kAxes.begin())};
+  for (int level = 0; !is_leaf(cell); ++level) {
+    const int d = split_end(level);
+    const bool is_first = w[0] >= w[d];
+    const double middle = 2 * std::min(w[0], w[d]), end = std::abs(w[0] - w[d]);
+    if (is_first) {
+      w[0] = end;
+    } else {
+      for (int i = 0; i + 1 < d; ++i) w[i] = w[i + 1];
+      w[d - 1] = end;
+    }
+    w[d] = middle;
+    cell = children(cell)[is_first ? 0 : 1];
+  }
+  return {cell, w};
+}
+
 // Goes round the edge from a cell, over the faces that hold `ahead`. Stops at the box, where it
 // started, or at a neighbour that is too coarse. True: the ring is complete or ends at the box.
 bool TetraMesh::walk(Slot from, NodeId ahead, std::array<NodeId, 2> edge, bool is_to_be_split) {
@@ -180,6 +205,7 @@ Diamond TetraMesh::split_towards(CellId cell) {
   }
   const NodeId middle = make_node(edge);
   parents_.clear();
+  children_.clear();
   for (auto& half : halves_) half.clear();
   for (const Slot near : ring_) {
     parents_.push_back(leaves_[near].cell);
@@ -187,12 +213,13 @@ Diamond TetraMesh::split_towards(CellId cell) {
     const Slot far = bisect(near, middle);
     halves_[end_of_near].push_back(near);
     halves_[1 - end_of_near].push_back(far);
+    children_.push_back(children(parents_.back()));
   }
   for (const auto& half : halves_) join(half);
   Node& node = nodes_[index(middle)];
   node.maker = parents_.front();
   node.made_with = node.incident;
-  return {middle, edge, parents_};
+  return {middle, edge, parents_, children_};
 }
 
 // The first child takes over the parent's slot, the second gets a new one.
@@ -267,7 +294,11 @@ Diamond TetraMesh::merge(NodeId middle) {
                                       second.corners[split_end(first.level - 1) - 1]};
   collect_ring(slot(children(maker)[0]), {edge[0], middle}, false);
   parents_.clear();
-  for (const Slot half : ring_) parents_.push_back(parent(leaves_[half].cell));
+  children_.clear();
+  for (const Slot half : ring_) {
+    parents_.push_back(parent(leaves_[half].cell));
+    children_.push_back(children(parents_.back()));
+  }
   halves_[0].clear();
   for (const CellId united : parents_) {
     unite(united);
@@ -276,7 +307,7 @@ Diamond TetraMesh::merge(NodeId middle) {
   join(halves_[0]);
   nodes_[index(middle)] = {};
   free_nodes_.push_back(middle);
-  return {middle, edge, parents_};
+  return {middle, edge, parents_, children_};
 }
 
 void TetraMesh::unite(CellId parent) {

@@ -31,6 +31,8 @@ struct Diamond {
   NodeId middle{};                  ///< the vertex that a split makes, and a merge takes away
   std::array<NodeId, 2> ends;       ///< of the edge
   std::span<const CellId> parents;  ///< the cells around the edge; valid until the next change
+  /// For each parent its two halves (after a merge: that were). Valid until the next change.
+  std::span<const std::array<CellId, 2>> children;
 };
 
 /// Tetrahedra that fill a box, refined by bisection of longest edges; always conforming.
@@ -122,12 +124,23 @@ class TetraMesh {
     }
   }
 
+  /// A leaf that holds a place, and the weights of its corners there (which add up to 1).
+  struct Located {
+    CellId leaf{};
+    Eigen::Vector4d weights;
+  };
+  /// Finds the leaf at a place; a place outside the box counts as the nearest one on it.
+  Located locate(const Eigen::Vector3d& p) const;
+
   /// Leaves in the order of the tree: the same whichever way the mesh came to them.
   std::vector<CellId> leaves_in_tree_order() const;
 
  private:
   using Slot = std::uint32_t;
   static constexpr std::size_t kRoots = 6;
+  /// Kuhn's triangulation of a cube: each root walks the axes in another order.
+  static constexpr std::array<std::array<int, 3>, kRoots> kAxes = {
+      {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
   static constexpr Slot kNoSlot = ~Slot{0};
   static constexpr std::uint32_t kLeafBit = std::uint32_t{1} << 31;
 
@@ -181,6 +194,7 @@ class TetraMesh {
   Slot obstacle_ = kNoSlot;  ///< a neighbour that has to be bisected first
   std::array<std::vector<Slot>, 2> halves_;  ///< the children of the ring at each end of the edge
   std::vector<CellId> parents_;
+  std::vector<std::array<CellId, 2>> children_;
 };
 
 }  // namespace terrane::hierarchy::volume
