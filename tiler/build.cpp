@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "core/errors.h"
+#include "tiler/build_seam.h"
 #include "tiler/build_tile.h"
 #include "tiler/output_folder.h"
 #include "tiler/whole_file.h"
@@ -70,15 +71,57 @@ class Build {
  private:
   void build_level(int level) {
     const std::vector<TileId> tiles = pyramid_.tiles(level);
+    const std::vector<SeamId> seams = tiler::seams(pyramid_, level);
     progress_.begin(fmt::format("level {} of {}", level, pyramid_.root_level()),
-                    static_cast<std::int64_t>(tiles.size()));
+                    static_cast<std::int64_t>(tiles.size() + seams.size()));
+    // all seams before any tile: a tile needs its own, and takes away what its seams are made from
+    for_each(seams, [&](const SeamId& seam) {
+      if (!is_done(seam)) build_seam(seam);
+    });
+    for_each(tiles, [&](const TileId& tile) {
+      if (!is_done(tile)) build_tile(tile);
+    });
+    folder_.forget_seams(level);
+  }
+
+  template <class Item, class Work>
+  void for_each(const std::vector<Item>& items, Work work) {
     tbb::task_arena arena(jobs_);
     arena.execute([&] {
-      tbb::parallel_for_each(tiles, [&](const TileId& tile) {
-        if (!is_done(tile)) build_tile(tile);
+      tbb::parallel_for_each(items, [&](const Item& item) {
+        work(item);
         progress_.advance(1);
       });
     });
+  }
+
+  bool is_done(const SeamId& seam) const {
+    return std::filesystem::exists(folder_.finished_seam(seam)) ||
+           (is_done(seam.first) && is_done(seam.second()));
+  }
+
+  void build_seam(const SeamId& seam) const {
+    const int level = seam.first.level;
+    const double tolerance_m = data_set_.tolerance_m[level];
+    SeamChain chain;
+    if (level == 0) {
+      chain = build_leaf_seam(source_, seam, tolerance_m);
+    } else {
+      std::vector<TileMesh> beside;
+      for (const TileId& tile : tiles_beside(pyramid_, seam)) {
+        beside.push_back(read_finished_tile(folder_.finished_tile(tile)).mesh);
+      }
+      chain = build_parent_seam(source_, seam, beside, tolerance_m);
+    }
+    write_finished_seam(chain, folder_.finished_seam(seam));
+  }
+
+  std::vector<SeamChain> finished_seams(const TileId& tile) const {
+    std::vector<SeamChain> chains;
+    for (const SeamId& seam : seams_of(pyramid_, tile)) {
+      chains.push_back(read_finished_seam(folder_.finished_seam(seam)));
+    }
+    return chains;
   }
 
   bool is_done(const TileId& tile) const {
@@ -90,7 +133,7 @@ class Build {
     const double tolerance_m = data_set_.tolerance_m[tile.level];
     FinishedTile finished;
     if (tile.level == 0) {
-      finished.mesh = build_leaf(source_, tile, tolerance_m).mesh;
+      finished.mesh = build_leaf(source_, tile, finished_seams(tile), tolerance_m).mesh;
       write_finished_tile(finished, folder_.finished_tile(tile));
       return;
     }
@@ -102,7 +145,7 @@ class Build {
       meshes.push_back(std::move(read.mesh));
       records.push_back(std::move(read.descendants));
     }
-    BuiltTile built = build_parent(source_, tile, meshes, tolerance_m);
+    BuiltTile built = build_parent(source_, tile, meshes, finished_seams(tile), tolerance_m);
     for (std::size_t c = 0; c < ids.size(); ++c) {
       write_tile(ids[c], meshes[c], built.child_targets[c], std::move(records[c]),
                  finished.descendants);

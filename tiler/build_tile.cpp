@@ -8,6 +8,7 @@
 
 #include "core/errors.h"
 #include "hierarchy/collapse/strict_collapse.h"
+#include "tiler/join_tiles.h"
 #include "tiler/measure.h"
 #include "tiler/terrain_normals.h"
 #include "tiler/tile_frame.h"
@@ -16,6 +17,7 @@ namespace terrane::tiler {
 namespace {
 
 using hierarchy::Corners;
+using hierarchy::FinerLevel;
 using hierarchy::Place;
 using hierarchy::SampleField;
 using hierarchy::SampleId;
@@ -24,10 +26,6 @@ using hierarchy::StrictResult;
 using hierarchy::TerrainMesh;
 using hierarchy::TerrainVertex;
 using hierarchy::VertexKind;
-
-// where the next level's steps are twice as wide, rounding moves a vertex by up to 0.71 of them:
-// both ends of an altitude together by 2.9 steps of this level
-constexpr double kSmallestAltitudeSteps = 4;
 
 hierarchy::FieldPoint plan_of(const Place& place) {
   return {hierarchy::column_of(place.plan), hierarchy::row_of(place.plan), 0};
@@ -39,12 +37,13 @@ hierarchy::FieldPoint blend(const hierarchy::FieldPoint& a, const hierarchy::Fie
 }
 
 /// Edges with a triangle on one side only: both their ends are samples.
-std::vector<Edge> rim_of(const TerrainMesh& mesh) {
+std::vector<Edge> rim_of(const std::vector<TerrainVertex>& vertices,
+                         const std::vector<Corners>& triangles) {
   std::set<Edge> open;
-  for (const Corners& corners : mesh.triangles) {
+  for (const Corners& corners : triangles) {
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t from = corners[k], to = corners[(k + 1) % 3];
-      const auto is_inside = [&](std::uint32_t v) { return mesh.vertices[v].sample.column < 0; };
+      const auto is_inside = [&](std::uint32_t v) { return vertices[v].sample.column < 0; };
       if (is_inside(from) || is_inside(to)) continue;
       if (open.erase({to, from}) == 0) open.insert({from, to});
     }
@@ -97,9 +96,9 @@ class TileBuild {
 
   /// Collapses and measures; again with a smaller tolerance while the world says it is too much.
   ///
-  /// \param finer  places of the finer level and, at finer_points, as they are written there.
+  /// \param finer_points  where the finer level's places are written there.
   std::pair<TileMesh, std::vector<LatticePoint>> finish(
-      const TerrainMesh& input, const std::vector<Place>& finer,
+      const TerrainMesh& input, const FinerLevel& finer,
       const std::vector<LatticePoint>& finer_points, double tolerance_m) const {
     // the grid frame's straight lines are not quite the world's: 0.1 % saves most second tries
     StrictOptions options{.tolerance_m = 0.999 * tolerance_m};
@@ -146,26 +145,26 @@ class TileBuild {
     }
     mesh.triangles = terrain.triangles;
     mesh.normals = terrain_normals(places, frame_, tile_.level, grid_, window_);
-    mesh.error = measured(vertices, mesh.triangles, rim_of(terrain));
+    mesh.error = measured(vertices, mesh.triangles, rim_of(terrain.vertices, terrain.triangles));
     return mesh;
   }
 
   /// The largest error of the finer level on its way to the result.
-  double blend_error_m(const TerrainMesh& input, const std::vector<Place>& finer,
+  double blend_error_m(const TerrainMesh& input, const FinerLevel& finer,
                        const std::vector<LatticePoint>& finer_points,
                        const StrictResult& result) const {
-    if (finer.empty()) return 0;
-    const std::vector<Edge> rim = rim_of(input);
+    if (finer.places.empty()) return 0;
+    const std::vector<Edge> rim = rim_of(input.vertices, finer.triangles);
     double worst_m = 0;
     for (const double t : {0.25, 0.5, 0.75}) {
       std::vector<WorldVertex> vertices;
-      for (std::size_t v = 0; v < finer.size(); ++v) {
+      for (std::size_t v = 0; v < finer.places.size(); ++v) {
         const Place& target = result.mesh.vertices[result.target[v]].place;
         const Eigen::Vector3d from = source_.lattice.world(finer_points[v], tile_.level - 1);
-        vertices.push_back(
-            {blend(plan_of(finer[v]), plan_of(target), t), from + t * (world_of(target) - from)});
+        vertices.push_back({blend(plan_of(finer.places[v]), plan_of(target), t),
+                            from + t * (world_of(target) - from)});
       }
-      worst_m = std::max(worst_m, measured(vertices, input.triangles, rim).max_m);
+      worst_m = std::max(worst_m, measured(vertices, finer.triangles, rim).max_m);
     }
     return worst_m;
   }
@@ -206,39 +205,6 @@ class TileBuild {
   SampleField field_;
 };
 
-/// Children joined: one vertex where seams meet.
-struct Joined {
-  std::vector<LatticePoint> points;  ///< on the children's lattice
-  std::vector<SampleId> samples;
-  std::vector<Corners> triangles;
-  std::vector<std::vector<std::uint32_t>> number;  ///< of each child's vertices
-};
-
-Joined join(const std::vector<TileMesh>& children) {
-  Joined joined;
-  std::map<std::pair<std::int32_t, std::int32_t>, std::uint32_t> by_sample;
-  for (const TileMesh& child : children) {
-    std::vector<std::uint32_t> number;
-    for (std::size_t v = 0; v < child.points.size(); ++v) {
-      const SampleId sample = child.samples[v];
-      auto next = static_cast<std::uint32_t>(joined.points.size());
-      if (sample.column >= 0) {
-        next = by_sample.emplace(std::pair{sample.row, sample.column}, next).first->second;
-      }
-      if (next == joined.points.size()) {
-        joined.points.push_back(child.points[v]);
-        joined.samples.push_back(sample);
-      }
-      number.push_back(next);
-    }
-    for (const Corners& c : child.triangles) {
-      joined.triangles.push_back({number[c[0]], number[c[1]], number[c[2]]});
-    }
-    joined.number.push_back(std::move(number));
-  }
-  return joined;
-}
-
 /// Which vertices have an edge with a triangle on one side only.
 std::vector<bool> find_boundary(std::size_t vertex_count, const std::vector<Corners>& triangles) {
   const hierarchy::HalfedgeMesh mesh(static_cast<std::uint32_t>(vertex_count), triangles);
@@ -259,37 +225,66 @@ void set_kind(TerrainVertex& vertex, bool is_boundary, const SampleId& sample,
                                                                     : VertexKind::kOutline;
 }
 
+/// Takes the vertices out of a tile that its seams leave out: as their triangles' corners become
+/// others, those that lose one vanish.
+FinerLevel leave_out(const std::vector<SampleId>& samples, const std::vector<SeamChain>& seams,
+                     std::vector<Corners>& triangles) {
+  std::map<std::pair<std::int32_t, std::int32_t>, std::uint32_t> by_sample;
+  for (std::uint32_t v = 0; v < samples.size(); ++v) {
+    if (samples[v].column >= 0) by_sample.emplace(std::pair{samples[v].row, samples[v].column}, v);
+  }
+  FinerLevel finer{.places = {}, .triangles = triangles, .target = {}};
+  for (std::uint32_t v = 0; v < samples.size(); ++v) finer.target.push_back(v);
+  for (const SeamChain& seam : seams) {
+    for (const auto& [gone, onto] : seam) {
+      const auto from = by_sample.find({gone.row, gone.column});
+      const auto to = by_sample.find({onto.row, onto.column});
+      // where only the neighbour has triangles, there is nothing to take out
+      if (from != by_sample.end() && to != by_sample.end()) finer.target[from->second] = to->second;
+    }
+  }
+  for (Corners& corners : triangles) {
+    for (std::uint32_t& v : corners) v = finer.target[v];
+  }
+  std::erase_if(triangles,
+                [](const Corners& c) { return c[0] == c[1] || c[1] == c[2] || c[2] == c[0]; });
+  return finer;
+}
+
 }  // namespace
 
-BuiltTile build_leaf(const TileSource& source, const TileId& tile, double tolerance_m) {
+BuiltTile build_leaf(const TileSource& source, const TileId& tile,
+                     const std::vector<SeamChain>& seams, double tolerance_m) {
   const TileBuild build(source, tile);
   hierarchy::GridTriangles full = hierarchy::triangulate(build.grid(), build.window());
   if (full.triangles.empty()) return {};
 
   const std::vector<bool> boundary = find_boundary(full.vertices.size(), full.triangles);
+  const FinerLevel finer = leave_out(full.vertices, seams, full.triangles);
   TerrainMesh mesh{{}, std::move(full.triangles)};
   for (std::size_t v = 0; v < full.vertices.size(); ++v) {
     mesh.vertices.push_back({.place = build.place_inner_sample(full.vertices[v])});
     set_kind(mesh.vertices.back(), boundary[v], full.vertices[v], source.pyramid, tile);
   }
   build.fix_rim(mesh);
-  return {build.finish(mesh, {}, {}, tolerance_m).first, {}};
+  return {build.finish(mesh, finer, {}, tolerance_m).first, {}};
 }
 
 BuiltTile build_parent(const TileSource& source, const TileId& tile,
-                       const std::vector<TileMesh>& children, double tolerance_m) {
+                       const std::vector<TileMesh>& children, const std::vector<SeamChain>& seams,
+                       double tolerance_m) {
   BuiltTile result;
-  Joined joined = join(children);
+  JoinedTiles joined = join(children);
   result.child_targets.resize(children.size());
   if (joined.triangles.empty()) return result;
 
   const TileBuild build(source, tile);
   const std::vector<bool> boundary = find_boundary(joined.points.size(), joined.triangles);
-  std::vector<Place> finer;
+  FinerLevel finer = leave_out(joined.samples, seams, joined.triangles);
   TerrainMesh mesh{{}, std::move(joined.triangles)};
   for (std::uint32_t v = 0; v < joined.points.size(); ++v) {
-    finer.push_back(build.frame().place_of_finer(joined.points[v]));
-    mesh.vertices.push_back({.place = build.frame().place_of(finer.back().lattice)});
+    finer.places.push_back(build.frame().place_of_finer(joined.points[v]));
+    mesh.vertices.push_back({.place = build.frame().place_of(finer.places.back().lattice)});
     set_kind(mesh.vertices.back(), boundary[v], joined.samples[v], source.pyramid, tile);
   }
   build.fix_rim(mesh);

@@ -5,6 +5,7 @@
 #include "core/height_source.h"
 #include "tiler/lattice.h"
 #include "tiler/pyramid.h"
+#include "tiler/seam.h"
 #include "tiler/tile_mesh.h"
 #include "tiler/world_frame.h"
 
@@ -18,6 +19,11 @@ struct TileSource {
   const Lattice& lattice;
 };
 
+/// Smallest altitude of a triangle in plan, in lattice steps: where the next level's steps are
+/// twice as wide, rounding moves a vertex by up to 0.71 of them, both ends of an altitude together
+/// by 2.9 steps of this level.
+inline constexpr double kSmallestAltitudeSteps = 4;
+
 /// A tile and where the vertices of its children end in it.
 struct BuiltTile {
   TileMesh mesh;
@@ -26,15 +32,18 @@ struct BuiltTile {
 };
 
 /// Builds a leaf tile from its samples.
+/// \param seams  what became of its seams.
 /// \throws ConfigError if the tolerance is finer than what the lattice can hold.
-BuiltTile build_leaf(const TileSource& source, const TileId& tile, double tolerance_m);
+BuiltTile build_leaf(const TileSource& source, const TileId& tile,
+                     const std::vector<SeamChain>& seams, double tolerance_m);
 
 /// Builds a tile from the meshes of its children (in the order of Pyramid::children): joins them
 /// along their seams and collapses what the wider tolerance allows.
 ///
 /// The result is within the tolerance of every sample as measured in the world; its seams are the
-/// children's outer ones, vertex by vertex.
+/// children's outer ones, less what \p seams leave out.
 BuiltTile build_parent(const TileSource& source, const TileId& tile,
-                       const std::vector<TileMesh>& children, double tolerance_m);
+                       const std::vector<TileMesh>& children, const std::vector<SeamChain>& seams,
+                       double tolerance_m);
 
 }  // namespace terrane::tiler

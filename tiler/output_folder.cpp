@@ -37,6 +37,15 @@ fs::path OutputFolder::finished_tile(const TileId& tile) const {
   return work() / (path_of(tile) + ".tile");
 }
 
+fs::path OutputFolder::finished_seam(const SeamId& seam) const {
+  return work() / "seams" / (path_of(seam) + ".seam");
+}
+
+void OutputFolder::forget_seams(int level) const {
+  std::error_code error;
+  fs::remove_all(work() / "seams" / fmt::format("{}", level), error);
+}
+
 void OutputFolder::claim(bool force) const {
   std::error_code error;
   if (fs::exists(root_, error) && !fs::is_directory(root_, error)) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tiler/seam.h"
 #include "tiler/tile_id.h"
 
 namespace terrane::tiler {
@@ -14,6 +15,7 @@ class OutputFolder {
 
   std::filesystem::path glb(const TileId& tile) const;
   std::filesystem::path finished_tile(const TileId& tile) const;
+  std::filesystem::path finished_seam(const SeamId& seam) const;
   std::filesystem::path tileset() const { return root_ / "tileset.json"; }
   std::filesystem::path summary() const { return root_ / "terrane.json"; }
 
@@ -29,6 +31,9 @@ class OutputFolder {
   /// Keeps the unfinished work of an earlier run if it has the same key; else clears the way:
   /// removes the files of any earlier data set, and of nobody else.
   void begin(const std::string& key) const;
+
+  /// Removes the finished seams of a level.
+  void forget_seams(int level) const;
 
   /// Removes the work folder.
   void end() const;

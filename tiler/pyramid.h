@@ -18,6 +18,9 @@ class Pyramid {
   int level_count() const { return level_count_; }
   int root_level() const { return level_count_ - 1; }
 
+  /// Does the DEM reach into the tile?
+  /// \pre neither x nor y is negative.
+  bool holds(const TileId& tile) const;
   /// Tiles of a level, row by row.
   std::vector<TileId> tiles(int level) const;
   /// The children of a tile that the DEM reaches; none at level 0.
@@ -31,7 +34,6 @@ class Pyramid {
   bool is_on_seam(const TileId& tile, std::int64_t column, std::int64_t row) const;
 
  private:
-  bool holds(const TileId& tile) const;
   std::int64_t cells_per_side(int level) const { return tile_cells_ << level; }
 
   GridShape shape_;

@@ -187,7 +187,7 @@ Place TileFrame::place(GridPoint plan, double height_m) const {
   return place;
 }
 
-bool TileFrame::is_straight(const Place& a, const Place& b) const {
+double TileFrame::bend_m(const Place& a, const Place& b) const {
   const auto base = [this](GridPoint p) {
     return plumb(hierarchy::column_of(p), hierarchy::row_of(p)).base;
   };
@@ -195,10 +195,13 @@ bool TileFrame::is_straight(const Place& a, const Place& b) const {
   const Plumb middle = plumb((hierarchy::column_of(a.plan) + hierarchy::column_of(b.plan)) / 2,
                              (hierarchy::row_of(a.plan) + hierarchy::row_of(b.plan)) / 2);
   const Eigen::Vector3d gap = middle.base - (from + to) / 2;
+  return (gap - gap.dot(middle.up) * middle.up).norm();
+}
+
+bool TileFrame::is_straight(const Place& a, const Place& b) const {
   // the ends are up to 0.71 steps off by rounding, and a whole step is what counts as covered
   constexpr double kShareOfStep = 0.2;
-  return (gap - gap.dot(middle.up) * middle.up).norm() <=
-         kShareOfStep * lattice_.step_m(level_).x();
+  return bend_m(a, b) <= kShareOfStep * lattice_.step_m(level_).x();
 }
 
 }  // namespace terrane::tiler

@@ -69,6 +69,14 @@ MorphGuard::MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
   }
 }
 
+void MorphGuard::begin_at(std::span<const std::uint32_t> target) {
+  for (std::uint32_t v = 0; v < target.size(); ++v) {
+    if (target[v] == v) continue;
+    const VertexId core[] = {VertexId{v}, VertexId{target[v]}};
+    join(core, core[1]);
+  }
+}
+
 bool MorphGuard::is_sound(const Corners& triangle, std::span<const VertexId> core,
                           const Place& target) const {
   std::array<GridPoint, 3> from, to;

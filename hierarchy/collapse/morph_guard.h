@@ -18,11 +18,15 @@ namespace terrane::hierarchy {
 class MorphGuard {
  public:
   /// \param finer      places of the finer level, one per vertex of the mesh to be collapsed.
-  /// \param triangles  the finer level's, which are the mesh's own before any collapse.
+  /// \param triangles  the finer level's.
   /// \param coarser    the mesh's vertices; read at every call, so it must outlive the guard.
   MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
              const std::vector<TerrainVertex>& coarser, const SampleField& field,
              double tolerance_m);
+
+  /// Tells that fine vertices have gone elsewhere already, without a check.
+  /// \param target  for each fine vertex: itself, or a vertex that stays; empty: none has gone.
+  void begin_at(std::span<const std::uint32_t> target);
 
   /// May the vertices of \p core all go to \p target?
   bool allows(std::span<const VertexId> core, const Place& target);

@@ -37,7 +37,7 @@ struct Candidate {
 class StrictCollapse {
  public:
   StrictCollapse(const TerrainMesh& input, const SampleField& field, const Placer& placer,
-                 const std::vector<Place>& finer, const StrictOptions& options)
+                 const FinerLevel& finer, const StrictOptions& options)
       : mesh_(static_cast<std::uint32_t>(input.vertices.size()), input.triangles),
         vertices_(split_like(mesh_, input.vertices)),
         walker_(mesh_),
@@ -50,12 +50,15 @@ class StrictCollapse {
     for (std::uint32_t v = 0; v < vertices_.size(); ++v) {
       if (mesh_.is_split(VertexId{v})) vertices_[v].kind = VertexKind::kLocked;
     }
-    if (!finer.empty()) {
-      guard_.emplace(split_like(mesh_, finer), mesh_.triangles(), vertices_, field,
+    if (!finer.places.empty()) {
+      guard_.emplace(split_like(mesh_, finer.places), finer.triangles, vertices_, field,
                      options.tolerance_m);
+      guard_->begin_at(finer.target);
     } else {
       parent_.resize(vertices_.size());
       for (std::uint32_t v = 0; v < vertices_.size(); ++v) parent_[v] = VertexId{v};
+      for (std::uint32_t v = 0; v < finer.target.size(); ++v)
+        parent_[v] = VertexId{finer.target[v]};
     }
   }
 
@@ -329,7 +332,7 @@ class StrictCollapse {
 }  // namespace
 
 StrictResult collapse_strictly(const TerrainMesh& input, const SampleField& field,
-                               const Placer& placer, const std::vector<Place>& finer,
+                               const Placer& placer, const FinerLevel& finer,
                                const StrictOptions& options) {
   return StrictCollapse(input, field, placer, finer, options).run(input.vertices.size());
 }

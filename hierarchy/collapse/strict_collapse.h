@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "hierarchy/collapse/finer_level.h"
 #include "hierarchy/collapse/sample_field.h"
 #include "hierarchy/collapse/terrain_mesh.h"
 #include "hierarchy/mesh/stencil.h"
@@ -21,7 +22,8 @@ struct StrictOptions {
 /// What became of a mesh.
 struct StrictResult {
   TerrainMesh mesh;
-  /// For each vertex of the input: the vertex of mesh that it was collapsed into.
+  /// For each vertex of the input: the vertex of mesh that it was collapsed into, or that its
+  /// finer.target was.
   std::vector<std::uint32_t> target;
   std::int64_t triangle_collapses = 0;
   std::int64_t edge_collapses = 0;
@@ -38,12 +40,12 @@ struct StrictResult {
 /// Guarantees: samples that \p input covers within the tolerance stay so; outline and locked
 /// vertices that remain have not moved; the result depends on nothing but the arguments.
 ///
-/// \param finer  places of the finer level, one for each vertex of input; empty at level 0.
+/// \param finer  the level that input was made from; without places at level 0.
 /// \throws TopologyError if \p input is not manifold.
 /// \par Source
 /// Gieng et al. 1998 for the collapse; acceptance by the exact error instead of its estimate.
 StrictResult collapse_strictly(const TerrainMesh& input, const SampleField& field,
-                               const Placer& placer, const std::vector<Place>& finer,
+                               const Placer& placer, const FinerLevel& finer,
                                const StrictOptions& options);
 
 }  // namespace terrane::hierarchy

@@ -42,6 +42,10 @@ class Placer {
   /// The written place nearest to a wished one.
   virtual Place place(GridPoint plan, double height_m) const = 0;
 
+  /// How far in plan the straight edge between two written places lies beside the straight line
+  /// between them on the grid, in metres.
+  virtual double bend_m(const Place& /*a*/, const Place& /*b*/) const { return 0; }
+
   /// Is the straight edge between two written places near enough to the straight line between them
   /// on the grid, so that samples on that line count as covered?
   virtual bool is_straight(const Place& a, const Place& b) const = 0;

@@ -6,6 +6,7 @@
 
 #include "ingest/scan.h"
 #include "tiler/build.h"
+#include "tiler/build_seam.h"
 #include "tiler/build_tile.h"
 #include "tiler/write_glb.h"
 
@@ -48,30 +49,52 @@ void BM_OpenAndScan(benchmark::State& state) {
 }
 BENCHMARK(BM_OpenAndScan)->Unit(benchmark::kMillisecond);
 
+/// The seams of a leaf tile, thinned out.
+std::vector<tiler::SeamChain> leaf_seams(const Dem& dem, const tiler::TileId& tile) {
+  std::vector<tiler::SeamChain> chains;
+  for (const tiler::SeamId& seam : tiler::seams_of(dem.pyramid, tile)) {
+    chains.push_back(tiler::build_leaf_seam(dem.tiles, seam, kTolerance_m));
+  }
+  return chains;
+}
+
+// a column of 65 samples at level 0
+void BM_BuildLeafSeam(benchmark::State& state) {
+  const Dem dem;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(tiler::build_leaf_seam(dem.tiles, {kLeaf, true},
+                                                    static_cast<double>(state.range(0))));
+  }
+  state.SetItemsProcessed(state.iterations());
+  state.SetLabel("seams");
+}
+BENCHMARK(BM_BuildLeafSeam)->Arg(1)->Arg(5)->Arg(20)->Unit(benchmark::kMillisecond);
+
 // level 0 of one tile: 8,192 triangles in
 void BM_BuildLeaf(benchmark::State& state) {
   const Dem dem;
+  const auto seams = leaf_seams(dem, kLeaf);
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        tiler::build_leaf(dem.tiles, kLeaf, static_cast<double>(state.range(0))));
+        tiler::build_leaf(dem.tiles, kLeaf, seams, static_cast<double>(state.range(0))));
   }
   state.SetItemsProcessed(state.iterations() * 8192);
   state.SetLabel("input triangles");
 }
 BENCHMARK(BM_BuildLeaf)->Arg(1)->Arg(5)->Arg(20)->Unit(benchmark::kMillisecond);
 
-// level 1 of one tile from its four children, the blend checked
+// level 1 of one tile from its four children, the blend checked; its seams as they come
 void BM_BuildParent(benchmark::State& state) {
   const Dem dem;
   std::vector<tiler::TileMesh> children;
   std::int64_t triangles = 0;
   for (const tiler::TileId& child : dem.pyramid.children(kLeaf.parent())) {
-    children.push_back(tiler::build_leaf(dem.tiles, child, kTolerance_m).mesh);
+    children.push_back(tiler::build_leaf(dem.tiles, child, leaf_seams(dem, child), kTolerance_m).mesh);
     triangles += static_cast<std::int64_t>(children.back().triangles.size());
   }
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        tiler::build_parent(dem.tiles, kLeaf.parent(), children, 2 * kTolerance_m));
+        tiler::build_parent(dem.tiles, kLeaf.parent(), children, {}, 2 * kTolerance_m));
   }
   state.SetItemsProcessed(state.iterations() * triangles);
   state.SetLabel("input triangles");
@@ -80,7 +103,7 @@ BENCHMARK(BM_BuildParent)->Unit(benchmark::kMillisecond);
 
 void BM_EncodeTile(benchmark::State& state) {
   const Dem dem;
-  const tiler::TileMesh mesh = tiler::build_leaf(dem.tiles, kLeaf, kTolerance_m).mesh;
+  const tiler::TileMesh mesh = tiler::build_leaf(dem.tiles, kLeaf, leaf_seams(dem, kLeaf), kTolerance_m).mesh;
   std::size_t bytes = 0;
   for (auto _ : state) {
     bytes = tiler::encode_glb(kLeaf, mesh, mesh.points, dem.lattice.step_m(0), false).size();

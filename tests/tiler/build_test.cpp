@@ -79,7 +79,7 @@ TEST_P(StoppedBuild, GoesOnToTheSameBytes) {
   EXPECT_EQ(bytes_below(stopped.path()), bytes_below(whole.path()));
 }
 
-INSTANTIATE_TEST_SUITE_P(AfterReads, StoppedBuild, ::testing::Values(0, 2, 7, 12, 17));
+INSTANTIATE_TEST_SUITE_P(AfterReads, StoppedBuild, ::testing::Values(0, 2, 7, 12, 17, 22, 27));
 
 TEST(Build, RefusesSettingsOutOfRange) {
   EXPECT_THROW(check({.tolerance_m = -1}), ConfigError);
@@ -187,6 +187,23 @@ TEST_P(RandomDem, HoldsEveryInvariantAtEveryLevel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomDem, ::testing::Range(0U, 40U));
+
+TEST(Build, SeamsOverAPlaneVanishWithTheRest) {
+  // nine leaf tiles: two triangles each would do, four leave room for the order of collapses
+  const FunctionDem dem({97, 97}, [](auto c, auto r) { return 2.0 * c + 3.0 * r; });
+  const auto report = verdict(dem, PlainPlace(), {.tolerance_m = 1, .tile_cells = 32});
+  EXPECT_TRUE(report.holds()) << to_text(report);
+  EXPECT_LE(report.levels[0].triangles, 9 * 4);
+}
+
+TEST(Build, SeamsAlongParallelsVanishToo) {
+  // a chord of 32 cells of 3" leaves its parallel by about 0.1 m, half a step and more
+  const FunctionDem dem({97, 97}, [](auto, auto) { return 500.0; });
+  const GeographicPlace alps({8.2, 46.9}, 1.0 / 1200);
+  const auto report = verdict(dem, alps, {.tolerance_m = 2, .tile_cells = 32});
+  EXPECT_TRUE(report.holds()) << to_text(report);
+  EXPECT_LE(report.levels[0].triangles, 9 * 4);
+}
 
 TEST(Build, HoldsTheBoundUnderACurvedEarth) {
   // 1 km cells, 60 km wide, flat: chords of 20 km sink 8 m, and 0.5 m is asked for

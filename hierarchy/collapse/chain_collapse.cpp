@@ -1,0 +1,287 @@
+#include "hierarchy/collapse/chain_collapse.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <queue>
+#include <tuple>
+
+#include "hierarchy/collapse/morph_guard.h"
+
+namespace terrane::hierarchy {
+namespace {
+
+constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+FieldPoint field_point(const Place& place) {
+  return {column_of(place.plan), row_of(place.plan), place.height_m};
+}
+
+double squared_length(GridPoint a, GridPoint b) {
+  const double x = static_cast<double>(b.x) - a.x, y = static_cast<double>(b.y) - a.y;
+  return x * x + y * y;
+}
+
+/// The square of the smallest altitude in grid units; 0 if the triangle is folded.
+double squared_altitude(GridPoint a, GridPoint b, GridPoint c) {
+  const auto area = static_cast<double>(orient2d(a, b, c));
+  if (area <= 0) return 0;
+  return area * area / std::max({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
+}
+
+/// Largest vertical distance to the samples under a triangle; infinite if over the limit.
+double worst_error_m(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
+                     const SampleField& field, double limit_m) {
+  const double bx = b.column - a.column, by = b.row - a.row, bz = b.height_m - a.height_m;
+  const double cx = c.column - a.column, cy = c.row - a.row, cz = c.height_m - a.height_m;
+  const double scale = 1 / (bx * cy - by * cx);
+  const double per_column = (bz * cy - by * cz) * scale, per_row = (bx * cz - bz * cx) * scale;
+  double worst = 0;
+  const bool is_within = for_each_span(
+      a, b, c, field, field.slack_cells,
+      [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+        const double at_row = a.height_m + (static_cast<double>(row) - a.row) * per_row;
+        for (std::int64_t column = first; column <= last; ++column) {
+          const double height_m = field.row(row)[column];
+          if (std::isnan(height_m)) continue;
+          const double z = at_row + (static_cast<double>(column) - a.column) * per_column;
+          worst = std::max(worst, std::abs(z - height_m));
+        }
+        return worst <= limit_m;
+      });
+  return is_within ? worst : std::numeric_limits<double>::infinity();
+}
+
+/// The vertices around one of the chain's, counter-clockwise.
+struct Ring {
+  std::vector<std::uint32_t> vertices;  ///< empty if they are not one fan
+  bool is_closed = false;               ///< else from the mesh's edge to its edge
+};
+
+Ring ring_of(std::vector<std::pair<std::uint32_t, std::uint32_t>> sides) {
+  if (sides.empty()) return {};
+  const auto leads_to = [&](std::uint32_t v) {
+    return std::ranges::find(sides, v, &std::pair<std::uint32_t, std::uint32_t>::second);
+  };
+  auto first = std::ranges::find_if(
+      sides, [&](const auto& side) { return leads_to(side.first) == sides.end(); });
+  Ring ring{.is_closed = first == sides.end()};
+  if (ring.is_closed) first = sides.begin();
+  std::size_t used = 0;
+  for (auto side = first; side != sides.end() && used < sides.size(); ++used) {
+    ring.vertices.push_back(side->first);
+    const std::uint32_t to = side->second;
+    side = std::ranges::find(sides, to, &std::pair<std::uint32_t, std::uint32_t>::first);
+    if (side == sides.end()) ring.vertices.push_back(to);
+    if (side == first) {
+      ++used;
+      break;
+    }
+  }
+  return used == sides.size() ? ring : Ring{};
+}
+
+/// A collapse that the error allows. The chain's vertices are named by their place in it.
+struct Candidate {
+  double worst_m;
+  double altitude2;  // the new triangles' smallest, squared
+  std::uint32_t gone, onto;
+  std::uint32_t version;  // of gone's surroundings
+
+  /// Is it to be done later?
+  bool operator<(const Candidate& other) const {
+    return std::tie(other.worst_m, altitude2, other.gone, other.onto) <
+           std::tie(worst_m, other.altitude2, gone, onto);
+  }
+};
+
+class ChainCollapse {
+ public:
+  ChainCollapse(const TerrainMesh& strip, std::span<const std::uint32_t> chain,
+                const FinerLevel& finer, const SampleField& field, const Placer& placer,
+                const ChainOptions& options)
+      : vertices_(strip.vertices),
+        chain_(chain),
+        field_(field),
+        placer_(placer),
+        options_(options),
+        place_in_chain_(strip.vertices.size(), kNone),
+        before_(chain.size()),
+        after_(chain.size()),
+        version_(chain.size(), 0) {
+    for (std::uint32_t i = 0; i < chain.size(); ++i) {
+      place_in_chain_[chain[i]] = i;
+      before_[i] = i == 0 ? kNone : i - 1;
+      after_[i] = i + 1 == chain.size() ? kNone : i + 1;
+    }
+    gather_rings(strip.triangles);
+    if (!finer.places.empty()) {
+      guard_.emplace(finer.places, finer.triangles, vertices_, field, options.blend_tolerance_m);
+    }
+    for (std::uint32_t v = 0; v < vertices_.size(); ++v) result_.target.push_back(v);
+  }
+
+  ChainResult run() {
+    for (std::uint32_t i = 0; i < chain_.size(); ++i) enqueue(i);
+    while (!queue_.empty()) {
+      const Candidate next = queue_.top();
+      queue_.pop();
+      if (next.version == version_[next.gone] && blends(next)) collapse(next.gone, next.onto);
+    }
+    follow_targets();
+    return std::move(result_);
+  }
+
+ private:
+  void gather_rings(const std::vector<Corners>& triangles) {
+    std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> sides(chain_.size());
+    for (const Corners& corners : triangles) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t i = place_in_chain_[corners[k]];
+        if (i != kNone) sides[i].emplace_back(corners[(k + 1) % 3], corners[(k + 2) % 3]);
+      }
+    }
+    for (auto& of_vertex : sides) rings_.push_back(ring_of(std::move(of_vertex)));
+  }
+
+  const Place& place(std::uint32_t i) const { return vertices_[chain_[i]].place; }
+
+  bool may_go(std::uint32_t i) const {
+    if (vertices_[chain_[i]].kind == VertexKind::kLocked) return false;
+    if (before_[i] == kNone || after_[i] == kNone) return false;
+    const auto& [around, is_closed] = rings_[i];
+    if (around.empty()) return false;
+    const std::uint32_t a = chain_[before_[i]], b = chain_[after_[i]];
+    if (is_closed) {
+      return std::ranges::find(around, a) != around.end() &&
+             std::ranges::find(around, b) != around.end();
+    }
+    return std::minmax(a, b) == std::minmax(around.front(), around.back());
+  }
+
+  /// May an edge stand for the samples between the neighbours of i?
+  bool may_be_joined(std::uint32_t i) const {
+    const Place &a = place(before_[i]), &b = place(after_[i]);
+    return rings_[i].is_closed ? placer_.bend_m(a, b) <= options_.largest_bend_m
+                               : placer_.is_straight(a, b);
+  }
+
+  void enqueue(std::uint32_t i) {
+    ++version_[i];
+    if (!may_go(i) || !may_be_joined(i)) return;
+    for (const std::uint32_t onto : {before_[i], after_[i]}) {
+      const Candidate candidate = judge(i, onto);
+      if (std::isfinite(candidate.worst_m)) queue_.push(candidate);
+    }
+  }
+
+  /// The vertices around i from its neighbour `onto` on, that one left out.
+  std::vector<std::uint32_t> others(std::uint32_t i, std::uint32_t onto) const {
+    const auto& [around, is_closed] = rings_[i];
+    std::vector<std::uint32_t> result;
+    const auto at = std::ranges::find(around, chain_[onto]);
+    result.assign(at + 1, around.end());
+    result.insert(result.end(), around.begin(), at);
+    return result;
+  }
+
+  Candidate judge(std::uint32_t gone, std::uint32_t onto) const {
+    Candidate candidate{0, std::numeric_limits<double>::infinity(), gone, onto, version_[gone]};
+    constexpr double kRefused = std::numeric_limits<double>::infinity();
+    const double altitude = options_.smallest_altitude_cells * kUnitsPerCell;
+    const std::vector<std::uint32_t> around = others(gone, onto);
+    const Place& centre = place(onto);
+    for (std::size_t k = 0; k + 1 < around.size(); ++k) {
+      const Place &a = vertices_[around[k]].place, &b = vertices_[around[k + 1]].place;
+      const double altitude2 = squared_altitude(centre.plan, a.plan, b.plan);
+      candidate.altitude2 = std::min(candidate.altitude2, altitude2);
+      if (altitude2 <= 0 || altitude2 < altitude * altitude) {
+        candidate.worst_m = kRefused;
+        return candidate;
+      }
+      candidate.worst_m =
+          std::max(candidate.worst_m, worst_error_m(field_point(centre), field_point(a),
+                                                    field_point(b), field_, options_.tolerance_m));
+      if (candidate.worst_m == kRefused) return candidate;
+    }
+    return candidate;
+  }
+
+  bool blends(const Candidate& candidate) {
+    if (!guard_) return true;
+    const VertexId core[] = {VertexId{chain_[candidate.gone]}};
+    if (guard_->allows(core, place(candidate.onto))) return true;
+    ++result_.refused_by_blend;
+    return false;
+  }
+
+  void collapse(std::uint32_t gone, std::uint32_t onto) {
+    const std::uint32_t u = chain_[gone], v = chain_[onto];
+    if (guard_) {
+      const VertexId core[] = {VertexId{u}, VertexId{v}};
+      guard_->join(core, VertexId{v});
+    }
+    hand_over_ring(gone, onto);
+    const std::uint32_t other = before_[gone] == onto ? after_[gone] : before_[gone];
+    (before_[gone] == onto ? after_[onto] : before_[onto]) = other;
+    (before_[gone] == onto ? before_[other] : after_[other]) = onto;
+    ++version_[gone];
+    rings_[gone] = {};
+    result_.target[u] = v;
+    ++result_.collapses;
+    enqueue(onto);
+    enqueue(other);
+  }
+
+  ///      a3───a2            onto's ring had ... a1, gone, a4 ...: a2 and a3 take gone's place;
+  ///     /  \ /  \           the other neighbours see onto where gone was
+  ///    x───gone──a1
+  ///     \  / \  /
+  ///      a4──onto
+  void hand_over_ring(std::uint32_t gone, std::uint32_t onto) {
+    const std::uint32_t u = chain_[gone], v = chain_[onto];
+    std::vector<std::uint32_t> around = others(gone, onto);
+    for (const std::uint32_t w : around) {
+      const std::uint32_t i = place_in_chain_[w];
+      if (i != kNone) std::ranges::replace(rings_[i].vertices, u, v);
+    }
+    const bool begins_with_v = rings_[gone].vertices.front() == v;
+    if (rings_[gone].is_closed || !begins_with_v) around.pop_back();
+    if (rings_[gone].is_closed || begins_with_v) around.erase(around.begin());
+    auto& ring = rings_[onto].vertices;
+    const auto at = std::ranges::find(ring, u);
+    if (at == ring.end()) return;
+    ring.insert(ring.erase(at), around.begin(), around.end());
+  }
+
+  void follow_targets() {
+    for (const std::uint32_t v : chain_) {
+      std::uint32_t& target = result_.target[v];
+      while (result_.target[target] != target) target = result_.target[target];
+    }
+  }
+
+  const std::vector<TerrainVertex>& vertices_;
+  std::span<const std::uint32_t> chain_;
+  const SampleField& field_;
+  const Placer& placer_;
+  const ChainOptions& options_;
+  std::optional<MorphGuard> guard_;
+
+  std::vector<std::uint32_t> place_in_chain_;  // of each vertex of the strip
+  std::vector<std::uint32_t> before_, after_;  // neighbours in what is left of the chain
+  std::vector<std::uint32_t> version_;
+  std::vector<Ring> rings_;
+  std::priority_queue<Candidate> queue_;
+  ChainResult result_;
+};
+
+}  // namespace
+
+ChainResult collapse_chain(const TerrainMesh& strip, std::span<const std::uint32_t> chain,
+                           const FinerLevel& finer, const SampleField& field, const Placer& placer,
+                           const ChainOptions& options) {
+  return ChainCollapse(strip, chain, finer, field, placer, options).run();
+}
+
+}  // namespace terrane::hierarchy
