@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
+#include "tiler/seam.h"
 #include "tiler/whole_file.h"
 
 namespace terrane::tiler {

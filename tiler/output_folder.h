@@ -3,10 +3,11 @@
 #include <filesystem>
 #include <string>
 
-#include "tiler/seam.h"
 #include "tiler/tile_id.h"
 
 namespace terrane::tiler {
+
+struct SeamId;
 
 /// Where things lie in an output folder (docs/formats.md).
 class OutputFolder {
