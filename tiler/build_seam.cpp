@@ -7,6 +7,7 @@
 #include "hierarchy/collapse/chain_collapse.h"
 #include "tiler/join_tiles.h"
 #include "tiler/measure.h"
+#include "tiler/reference.h"
 #include "tiler/tile_frame.h"
 
 namespace terrane::tiler {
@@ -17,7 +18,6 @@ using hierarchy::ChainResult;
 using hierarchy::Corners;
 using hierarchy::FinerLevel;
 using hierarchy::Place;
-using hierarchy::SampleField;
 using hierarchy::SampleId;
 using hierarchy::TerrainMesh;
 using hierarchy::TerrainVertex;
@@ -78,20 +78,18 @@ Window unite(const Window& a, const Window& b) {
 /// A seam on its way: the samples around it, its map to the world, its strip.
 class SeamBuild {
  public:
-  SeamBuild(const TileSource& source, const SeamId& seam, Strip strip, const Window& window,
-            HeightGrid grid)
+  SeamBuild(const TileSource& source, const SeamId& seam, Strip strip, const Window& window)
       : source_(source),
         seam_(seam),
         strip_(std::move(strip)),
-        window_(window),
-        grid_(std::move(grid)),
-        frame_(source.world, source.lattice, window, seam.first.level) {
-    fill_field();
+        samples_(source.heights, window, 0, strip_.triangles.size()),
+        frame_(source.world, source.lattice, window, seam.first.level),
+        reference_(samples_, frame_, step_m() / frame_.spacing_m()) {
     place_vertices();
     list_chain();
   }
 
-  SeamChain run(double tolerance_m) const {
+  SeamChain run(double tolerance_m) {
     const double step_cells = step_m() / frame_.spacing_m();
     // as in build_tile: the grid frame's straight lines are not quite the world's
     ChainOptions options{.tolerance_m = kShare * 0.999 * tolerance_m,
@@ -99,13 +97,16 @@ class SeamBuild {
                          .smallest_altitude_cells = kSmallestAltitudeSteps * step_cells,
                          .largest_bend_m = std::min(kLargestBend * tolerance_m,
                                                     kLargestBend_cells * frame_.spacing_m())};
-    constexpr int kMostTries = 5;
+    constexpr int kMostTries = 8;
     for (int tries = 0; tries < kMostTries; ++tries) {
       const ChainResult result =
-          hierarchy::collapse_chain(mesh_, chain_, finer_, field_, frame_, options);
+          hierarchy::collapse_chain(mesh_, chain_, finer_, reference_.field(), frame_, options);
       if (result.collapses == 0) break;
-      const double worst_m = worst_error_m(result);
+      const auto [errors, noted] =
+          measure(measured_meshes(result), samples_, frame_, step_m(), kNotedShare * tolerance_m);
+      const double worst_m = std::ranges::max(errors, {}, &MeasuredError::max_m).max_m;
       if (worst_m <= kLargestShare * tolerance_m) return left_out(result);
+      if (reference_.learn(noted)) continue;
       const double factor = std::min(0.98, kLargestShare * tolerance_m / worst_m);
       options.tolerance_m *= factor;
       options.blend_tolerance_m *= factor;
@@ -123,17 +124,6 @@ class SeamBuild {
 
   double step_m() const { return source_.lattice.step_m(seam_.first.level).x(); }
 
-  void fill_field() {
-    field_ = {window_.columns, window_.rows, {}, step_m() / frame_.spacing_m()};
-    for (std::int64_t row = 0; row < window_.rows; ++row) {
-      for (std::int64_t column = 0; column < window_.columns; ++column) {
-        field_.heights_m.push_back(
-            grid_.at(window_.column + column, window_.row + row) -
-            frame_.drop_m(static_cast<double>(column), static_cast<double>(row)));
-      }
-    }
-  }
-
   void place_vertices() {
     mesh_.triangles = finer_.triangles = strip_.triangles;
     const std::vector<LatticePoint> at_samples = written_samples();
@@ -147,17 +137,22 @@ class SeamBuild {
 
   /// Where the samples of the strip are written at this level.
   std::vector<LatticePoint> written_samples() const {
+    std::vector<std::size_t> numbers;
+    std::vector<SampleId> samples;
     std::vector<GridPosition> positions;
-    for (const SampleId& s : strip_.samples) {
+    for (std::size_t v = 0; v < strip_.samples.size(); ++v) {
+      const SampleId& s = strip_.samples[v];
+      if (s.column < 0) continue;
+      numbers.push_back(v);
+      samples.push_back(s);
       positions.push_back({static_cast<double>(s.column), static_cast<double>(s.row)});
     }
     const std::vector<Plumb> plumbs = source_.world.plumbs(positions);
-    std::vector<LatticePoint> points(positions.size());
-    for (std::size_t v = 0; v < points.size(); ++v) {
-      const SampleId& s = strip_.samples[v];
-      if (s.column < 0) continue;
-      points[v] = source_.lattice.nearest(plumbs[v].base + grid_.at(s.column, s.row) * plumbs[v].up,
-                                          seam_.first.level);
+    const std::vector<double> heights_m = samples_.heights_m(samples);
+    std::vector<LatticePoint> points(strip_.samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      points[numbers[i]] =
+          source_.lattice.nearest(plumbs[i].base + heights_m[i] * plumbs[i].up, seam_.first.level);
     }
     return points;
   }
@@ -208,24 +203,26 @@ class SeamBuild {
            source_.pyramid.is_on_seam(seam_.second(), s.column, s.row);
   }
 
-  /// In the world, with the blend.
-  double worst_error_m(const ChainResult& result) const {
-    std::vector<WorldVertex> vertices;
-    for (const TerrainVertex& vertex : mesh_.vertices) vertices.push_back(at(vertex.place));
-    double worst_m = measured_m(vertices, collapsed(result));
-    if (finer_.places.empty()) return worst_m;
+  /// The strip as it will be, and the finer level on its way there.
+  std::vector<MeasuredMesh> measured_meshes(const ChainResult& result) {
+    collapsed_ = collapsed(result);
+    std::vector<MeasuredMesh> meshes{{{}, collapsed_, {}}};
+    for (const TerrainVertex& vertex : mesh_.vertices) {
+      meshes[0].vertices.push_back(at(vertex.place));
+    }
+    if (finer_.places.empty()) return meshes;
     for (const double t : {0.25, 0.5, 0.75}) {
       std::vector<WorldVertex> moving;
-      for (std::size_t v = 0; v < vertices.size(); ++v) {
-        const WorldVertex& to = vertices[result.target[v]];
+      for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
+        const WorldVertex& to = meshes[0].vertices[result.target[v]];
         const WorldVertex from = at_finer(v);
         moving.push_back({{from.plan.column + t * (to.plan.column - from.plan.column),
                            from.plan.row + t * (to.plan.row - from.plan.row), 0},
                           from.world + t * (to.world - from.world)});
       }
-      worst_m = std::max(worst_m, measured_m(moving, strip_.triangles));
+      meshes.push_back({std::move(moving), strip_.triangles, {}});
     }
-    return worst_m;
+    return meshes;
   }
 
   WorldVertex at(const Place& place) const {
@@ -237,11 +234,6 @@ class SeamBuild {
     WorldVertex vertex = at(finer_.places[v]);
     vertex.world = source_.lattice.world(strip_.points[v], seam_.first.level - 1);
     return vertex;
-  }
-
-  double measured_m(const std::vector<WorldVertex>& vertices,
-                    const std::vector<Corners>& triangles) const {
-    return measure(vertices, triangles, {}, frame_, step_m(), grid_, window_).max_m;
   }
 
   std::vector<Corners> collapsed(const ChainResult& result) const {
@@ -267,13 +259,13 @@ class SeamBuild {
   const TileSource& source_;
   SeamId seam_;
   Strip strip_;
-  Window window_;
-  HeightGrid grid_;
+  TileSamples samples_;
   TileFrame frame_;
-  SampleField field_;
+  Reference reference_;
   TerrainMesh mesh_;
   FinerLevel finer_;
   std::vector<std::uint32_t> chain_;
+  std::vector<Corners> collapsed_;  // of the last try
 };
 
 /// The samples that the triangles of a strip may cover.
@@ -305,7 +297,7 @@ SeamChain build_leaf_seam(const TileSource& source, const SeamId& seam, double t
   const Window sides[] = {beside(source.pyramid.window(seam.first), seam, true),
                           beside(source.pyramid.window(seam.second()), seam, false)};
   const Window window = unite(sides[0], sides[1]);
-  HeightGrid grid = source.heights.read(window);
+  const HeightGrid grid = source.heights.read(window);
   std::vector<TileMesh> meshes;
   for (const Window& side : sides) {
     hierarchy::GridTriangles full = hierarchy::triangulate(grid, side);
@@ -318,7 +310,7 @@ SeamChain build_leaf_seam(const TileSource& source, const SeamId& seam, double t
   Strip strip = cut_strip({std::move(joined.samples), {}, std::move(joined.triangles)},
                           samples_of(source.pyramid, seam));
   if (strip.triangles.empty()) return {};
-  return SeamBuild(source, seam, std::move(strip), window, std::move(grid)).run(tolerance_m);
+  return SeamBuild(source, seam, std::move(strip), window).run(tolerance_m);
 }
 
 SeamChain build_parent_seam(const TileSource& source, const SeamId& seam,
@@ -329,8 +321,7 @@ SeamChain build_parent_seam(const TileSource& source, const SeamId& seam,
                 samples_of(source.pyramid, seam));
   if (strip.triangles.empty()) return {};
   const Window window = bounds_of(strip, source, seam);
-  HeightGrid grid = source.heights.read(window);
-  return SeamBuild(source, seam, std::move(strip), window, std::move(grid)).run(tolerance_m);
+  return SeamBuild(source, seam, std::move(strip), window).run(tolerance_m);
 }
 
 std::vector<TileId> tiles_beside(const Pyramid& pyramid, const SeamId& seam) {

@@ -10,8 +10,10 @@
 #include "hierarchy/collapse/strict_collapse.h"
 #include "tiler/join_tiles.h"
 #include "tiler/measure.h"
+#include "tiler/reference.h"
 #include "tiler/terrain_normals.h"
 #include "tiler/tile_frame.h"
+#include "tiler/tile_samples.h"
 
 namespace terrane::tiler {
 namespace {
@@ -19,7 +21,6 @@ namespace {
 using hierarchy::Corners;
 using hierarchy::FinerLevel;
 using hierarchy::Place;
-using hierarchy::SampleField;
 using hierarchy::SampleId;
 using hierarchy::StrictOptions;
 using hierarchy::StrictResult;
@@ -54,43 +55,45 @@ std::vector<Edge> rim_of(const std::vector<TerrainVertex>& vertices,
 /// One tile on its way: its samples, its map to the world, its options.
 class TileBuild {
  public:
-  TileBuild(const TileSource& source, const TileId& tile)
+  TileBuild(const TileSource& source, const TileId& tile, std::size_t input_triangles)
       : source_(source),
         tile_(tile),
-        window_(source.pyramid.window(tile)),
-        grid_(source.heights.read(source.pyramid.window(tile, normal_reach(tile.level)))),
-        frame_(source.world, source.lattice, window_, tile.level) {
-    fill_field();
-  }
+        samples_(source.heights, source.pyramid.window(tile), normal_reach(tile.level),
+                 input_triangles),
+        frame_(source.world, source.lattice, samples_.window(), tile.level),
+        reference_(samples_, frame_, step_m() / frame_.spacing_m()) {}
 
-  const Window& window() const { return window_; }
-  const HeightGrid& grid() const { return grid_; }
+  const TileSamples& samples() const { return samples_; }
   const TileFrame& frame() const { return frame_; }
 
   /// Where a sample that no other tile shares is written.
+  /// \pre a leaf tile
   Place place_inner_sample(const SampleId& sample) const {
-    const std::int64_t column = sample.column - window_.column, row = sample.row - window_.row;
+    const std::int64_t column = sample.column - samples_.window().column;
+    const std::int64_t row = sample.row - samples_.window().row;
     const hierarchy::GridPoint plan{static_cast<std::int32_t>(column * hierarchy::kUnitsPerCell),
                                     static_cast<std::int32_t>(-row * hierarchy::kUnitsPerCell)};
-    return frame_.place(plan, field_.row(row)[column]);
+    return frame_.place(plan, reference_.field().row(row)[column]);
   }
 
   /// Puts the vertices of rim and seams where their samples are written: a function of the sample
   /// alone, the same in every tile and never by way of the tile's own frame.
   void fix_rim(TerrainMesh& mesh) const {
     std::vector<TerrainVertex*> rim;
+    std::vector<SampleId> samples;
     std::vector<GridPosition> positions;
     for (TerrainVertex& vertex : mesh.vertices) {
       if (vertex.kind == VertexKind::kInterior) continue;
       rim.push_back(&vertex);
+      samples.push_back(vertex.sample);
       positions.push_back(
           {static_cast<double>(vertex.sample.column), static_cast<double>(vertex.sample.row)});
     }
     const std::vector<Plumb> plumbs = source_.world.plumbs(positions);
+    const std::vector<double> heights_m = samples_.heights_m(samples);
     for (std::size_t i = 0; i < rim.size(); ++i) {
-      const double height_m = grid_.at(rim[i]->sample.column, rim[i]->sample.row);
       rim[i]->place = frame_.place_of(
-          source_.lattice.nearest(plumbs[i].base + height_m * plumbs[i].up, tile_.level));
+          source_.lattice.nearest(plumbs[i].base + heights_m[i] * plumbs[i].up, tile_.level));
     }
   }
 
@@ -99,80 +102,63 @@ class TileBuild {
   /// \param finer_points  where the finer level's places are written there.
   std::pair<TileMesh, std::vector<LatticePoint>> finish(
       const TerrainMesh& input, const FinerLevel& finer,
-      const std::vector<LatticePoint>& finer_points, double tolerance_m) const {
+      const std::vector<LatticePoint>& finer_points, double tolerance_m) {
     // the grid frame's straight lines are not quite the world's: 0.1 % saves most second tries
     StrictOptions options{.tolerance_m = 0.999 * tolerance_m};
     options.smallest_altitude_cells =
         kSmallestAltitudeSteps * source_.lattice.step_m(tile_.level).x() / frame_.spacing_m();
 
-    constexpr int kMostTries = 6;
+    constexpr int kMostTries = 12;
     for (int tries = 1;; ++tries) {
       const StrictResult result =
-          hierarchy::collapse_strictly(input, field_, frame_, finer, options);
-      TileMesh mesh = written_mesh(result.mesh);
-      const double worst_m =
-          std::max(mesh.error.max_m, blend_error_m(input, finer, finer_points, result));
-      if (worst_m <= tolerance_m) return {std::move(mesh), targets(result)};
+          hierarchy::collapse_strictly(input, reference_.field(), frame_, finer, options);
+      const auto [errors, noted] = measure(measured_meshes(input, finer, finer_points, result),
+                                           samples_, frame_, step_m(), kNotedShare * tolerance_m);
+      const double worst_m = std::ranges::max(errors, {}, &MeasuredError::max_m).max_m;
+      if (worst_m <= tolerance_m) return {written_mesh(result.mesh, errors[0]), targets(result)};
       if (tries == kMostTries) refuse(worst_m, tolerance_m);
+      if (reference_.learn(noted)) continue;
       // gently at first: most are over by a thousandth
       options.tolerance_m *= std::min(1 - 0.005 * (1 << tries), 0.999 * tolerance_m / worst_m);
     }
   }
 
  private:
-  void fill_field() {
-    field_ = {window_.columns, window_.rows, {}};
-    field_.slack_cells = source_.lattice.step_m(tile_.level).x() / frame_.spacing_m();
-    field_.heights_m.reserve(static_cast<std::size_t>(window_.columns * window_.rows));
-    for (std::int64_t row = 0; row < window_.rows; ++row) {
-      for (std::int64_t column = 0; column < window_.columns; ++column) {
-        field_.heights_m.push_back(
-            grid_.at(window_.column + column, window_.row + row) -
-            frame_.drop_m(static_cast<double>(column), static_cast<double>(row)));
-      }
-    }
-  }
+  double step_m() const { return source_.lattice.step_m(tile_.level).x(); }
 
-  TileMesh written_mesh(const TerrainMesh& terrain) const {
-    TileMesh mesh;
+  TileMesh written_mesh(const TerrainMesh& terrain, const MeasuredError& error) const {
+    TileMesh mesh{.triangles = terrain.triangles, .error = error};
     std::vector<Place> places;
-    std::vector<WorldVertex> vertices;
     for (const TerrainVertex& vertex : terrain.vertices) {
       mesh.points.push_back(vertex.place.lattice);
       mesh.samples.push_back(vertex.sample);
       places.push_back(vertex.place);
-      vertices.push_back({plan_of(vertex.place), world_of(vertex.place)});
     }
-    mesh.triangles = terrain.triangles;
-    mesh.normals = terrain_normals(places, frame_, tile_.level, grid_, window_);
-    mesh.error = measured(vertices, mesh.triangles, rim_of(terrain.vertices, terrain.triangles));
+    mesh.normals = terrain_normals(places, frame_, tile_.level, samples_);
     return mesh;
   }
 
-  /// The largest error of the finer level on its way to the result.
-  double blend_error_m(const TerrainMesh& input, const FinerLevel& finer,
-                       const std::vector<LatticePoint>& finer_points,
-                       const StrictResult& result) const {
-    if (finer.places.empty()) return 0;
-    const std::vector<Edge> rim = rim_of(input.vertices, finer.triangles);
-    double worst_m = 0;
+  /// The result, and the finer level on its way to it.
+  std::vector<MeasuredMesh> measured_meshes(const TerrainMesh& input, const FinerLevel& finer,
+                                            const std::vector<LatticePoint>& finer_points,
+                                            const StrictResult& result) const {
+    std::vector<MeasuredMesh> meshes(1);
+    meshes[0].triangles = result.mesh.triangles;
+    meshes[0].rim = rim_of(result.mesh.vertices, result.mesh.triangles);
+    for (const TerrainVertex& vertex : result.mesh.vertices) {
+      meshes[0].vertices.push_back({plan_of(vertex.place), world_of(vertex.place)});
+    }
+    if (finer.places.empty()) return meshes;
     for (const double t : {0.25, 0.5, 0.75}) {
-      std::vector<WorldVertex> vertices;
+      meshes.push_back({{}, finer.triangles, rim_of(input.vertices, finer.triangles)});
       for (std::size_t v = 0; v < finer.places.size(); ++v) {
         const Place& target = result.mesh.vertices[result.target[v]].place;
         const Eigen::Vector3d from = source_.lattice.world(finer_points[v], tile_.level - 1);
-        vertices.push_back({blend(plan_of(finer.places[v]), plan_of(target), t),
-                            from + t * (world_of(target) - from)});
+        meshes.back().vertices.push_back({blend(plan_of(finer.places[v]), plan_of(target), t),
+                                          from + t * (world_of(target) - from)});
       }
-      worst_m = std::max(worst_m, measured(vertices, finer.triangles, rim).max_m);
     }
-    return worst_m;
-  }
-
-  MeasuredError measured(std::span<const WorldVertex> vertices, std::span<const Corners> triangles,
-                         std::span<const Edge> rim) const {
-    return measure(vertices, triangles, rim, frame_, source_.lattice.step_m(tile_.level).x(), grid_,
-                   window_);
+    return meshes;
   }
 
   Eigen::Vector3d world_of(const Place& place) const {
@@ -199,10 +185,9 @@ class TileBuild {
 
   const TileSource& source_;
   TileId tile_;
-  Window window_;
-  HeightGrid grid_;
+  TileSamples samples_;
   TileFrame frame_;
-  SampleField field_;
+  Reference reference_;
 };
 
 /// Which vertices have an edge with a triangle on one side only.
@@ -255,8 +240,9 @@ FinerLevel leave_out(const std::vector<SampleId>& samples, const std::vector<Sea
 
 BuiltTile build_leaf(const TileSource& source, const TileId& tile,
                      const std::vector<SeamChain>& seams, double tolerance_m) {
-  const TileBuild build(source, tile);
-  hierarchy::GridTriangles full = hierarchy::triangulate(build.grid(), build.window());
+  TileBuild build(source, tile, 0);
+  const TileSamples& samples = build.samples();
+  hierarchy::GridTriangles full = hierarchy::triangulate(samples.whole(), samples.window());
   if (full.triangles.empty()) return {};
 
   const std::vector<bool> boundary = find_boundary(full.vertices.size(), full.triangles);
@@ -278,7 +264,7 @@ BuiltTile build_parent(const TileSource& source, const TileId& tile,
   result.child_targets.resize(children.size());
   if (joined.triangles.empty()) return result;
 
-  const TileBuild build(source, tile);
+  TileBuild build(source, tile, joined.triangles.size());
   const std::vector<bool> boundary = find_boundary(joined.points.size(), joined.triangles);
   FinerLevel finer = leave_out(joined.samples, seams, joined.triangles);
   TerrainMesh mesh{{}, std::move(joined.triangles)};

@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "core/height_grid.h"
 #include "hierarchy/collapse/sample_field.h"
 #include "hierarchy/mesh/halfedge_mesh.h"
 #include "tiler/tile_frame.h"
 #include "tiler/tile_mesh.h"
+#include "tiler/tile_samples.h"
 
 namespace terrane::tiler {
 
@@ -21,15 +23,24 @@ struct WorldVertex {
 /// Two vertices.
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Measures a mesh in the world, along the plumb line of every sample under it.
+/// A mesh to be measured.
+struct MeasuredMesh {
+  std::vector<WorldVertex> vertices;
+  std::span<const hierarchy::Corners> triangles;
+  std::vector<Edge> rim;  ///< edges with a triangle on one side only
+};
+
+struct Measured {
+  std::vector<MeasuredError> errors;               ///< one for each mesh
+  std::vector<hierarchy::FieldSample> noted = {};  ///< heights over the frame's curved datum
+};
+
+/// Measures meshes over one tile in the world, along the plumb line of every sample under them.
 ///
 /// A sample that rounding left outside by less than \p step_m is measured against the nearest point
 /// of the rim. max_m is an upper bound: what the frame may be off is added.
-/// \param rim     edges with a triangle on one side only.
-/// \param window  the tile's samples; inside grid.window.
-MeasuredError measure(std::span<const WorldVertex> vertices,
-                      std::span<const hierarchy::Corners> triangles, std::span<const Edge> rim,
-                      const TileFrame& frame, double step_m, const HeightGrid& grid,
-                      const Window& window);
+/// \param noted_m  samples that any mesh is farther from than this are noted.
+Measured measure(std::span<const MeasuredMesh> meshes, const TileSamples& samples,
+                 const TileFrame& frame, double step_m, double noted_m);
 
 }  // namespace terrane::tiler

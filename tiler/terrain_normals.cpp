@@ -30,28 +30,44 @@ double slope(const HeightGrid& grid, std::int64_t column, std::int64_t row, std:
   return 0;
 }
 
+/// The sample of the DEM that is nearest to a place of the tile.
+hierarchy::SampleId nearest_sample(const hierarchy::Place& place, const Window& tile) {
+  return {static_cast<std::int32_t>(tile.column + std::llround(hierarchy::column_of(place.plan))),
+          static_cast<std::int32_t>(tile.row + std::llround(hierarchy::row_of(place.plan)))};
+}
+
+Eigen::Vector3f normal_at(const hierarchy::Place& place, const TileFrame& frame, std::int64_t reach,
+                          const HeightGrid& grid, const Window& tile) {
+  const double c = hierarchy::column_of(place.plan), r = hierarchy::row_of(place.plan);
+  const auto [column, row] = nearest_sample(place, tile);
+  const Plumb here = frame.plumb(c, r);
+  const Eigen::Vector3d along_columns = frame.plumb(c + 0.5, r).base -
+                                        frame.plumb(c - 0.5, r).base +
+                                        slope(grid, column, row, reach, 0) * here.up;
+  const Eigen::Vector3d along_rows = frame.plumb(c, r + 0.5).base - frame.plumb(c, r - 0.5).base +
+                                     slope(grid, column, row, 0, reach) * here.up;
+  const Eigen::Vector3d normal = along_columns.cross(along_rows).normalized();
+  return (normal.dot(here.up) < 0 ? Eigen::Vector3d(-normal) : normal).cast<float>();
+}
+
 }  // namespace
 
 std::int64_t normal_reach(int level) { return level < 2 ? 1 : std::int64_t{1} << (level - 1); }
 
 std::vector<Eigen::Vector3f> terrain_normals(std::span<const hierarchy::Place> places,
                                              const TileFrame& frame, int level,
-                                             const HeightGrid& grid, const Window& window) {
-  const std::int64_t reach = normal_reach(level);
-  std::vector<Eigen::Vector3f> normals;
-  normals.reserve(places.size());
-  for (const hierarchy::Place& place : places) {
-    const double c = hierarchy::column_of(place.plan), r = hierarchy::row_of(place.plan);
-    const std::int64_t column = window.column + std::llround(c), row = window.row + std::llround(r);
-    const Plumb here = frame.plumb(c, r);
-    const Eigen::Vector3d along_columns = frame.plumb(c + 0.5, r).base -
-                                          frame.plumb(c - 0.5, r).base +
-                                          slope(grid, column, row, reach, 0) * here.up;
-    const Eigen::Vector3d along_rows = frame.plumb(c, r + 0.5).base - frame.plumb(c, r - 0.5).base +
-                                       slope(grid, column, row, 0, reach) * here.up;
-    const Eigen::Vector3d normal = along_columns.cross(along_rows).normalized();
-    normals.push_back((normal.dot(here.up) < 0 ? Eigen::Vector3d(-normal) : normal).cast<float>());
+                                             const TileSamples& samples) {
+  std::vector<std::vector<std::size_t>> in_patch(samples.patch_count());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto [column, row] = nearest_sample(places[i], samples.window());
+    in_patch[samples.patch_of(column, row)].push_back(i);
   }
+  std::vector<Eigen::Vector3f> normals(places.size());
+  samples.for_each_patch([&](std::size_t k, const Window&, const HeightGrid& grid) {
+    for (const std::size_t i : in_patch[k]) {
+      normals[i] = normal_at(places[i], frame, normal_reach(level), grid, samples.window());
+    }
+  });
   return normals;
 }
 

@@ -141,6 +141,27 @@ Plumb TileFrame::plumb(double column, double row) const {
   return {value.head<3>(), value.tail<3>()};
 }
 
+TileFrame::Row TileFrame::row(double row) const {
+  const int n = degree_ + 1;
+  const double t = half_rows_ > 0 ? row / half_rows_ - 1 : 0;
+  Row result;
+  result.half_columns_ = half_columns_;
+  result.coefficients_ = coefficients_.middleCols(degree_ * n, n);
+  for (int j = degree_ - 1; j >= 0; --j) {
+    result.coefficients_ = t * result.coefficients_ + coefficients_.middleCols(j * n, n);
+  }
+  return result;
+}
+
+Plumb TileFrame::Row::plumb(double column) const {
+  const double s = half_columns_ > 0 ? column / half_columns_ - 1 : 0;
+  Eigen::Matrix<double, 6, 1> value = coefficients_.rightCols<1>();
+  for (Eigen::Index i = coefficients_.cols() - 2; i >= 0; --i) {
+    value = s * value + coefficients_.col(i);
+  }
+  return {value.head<3>(), value.tail<3>()};
+}
+
 double TileFrame::drop_m(double column, double row) const {
   const double x = column - half_columns_, y = row - half_rows_;
   return curvature_[0] * x * x + curvature_[1] * x * y + curvature_[2] * y * y;

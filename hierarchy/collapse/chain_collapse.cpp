@@ -37,16 +37,11 @@ double worst_error_m(const FieldPoint& a, const FieldPoint& b, const FieldPoint&
   const double scale = 1 / (bx * cy - by * cx);
   const double per_column = (bz * cy - by * cz) * scale, per_row = (bx * cz - bz * cx) * scale;
   double worst = 0;
-  const bool is_within = for_each_span(
-      a, b, c, field, field.slack_cells,
-      [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-        const double at_row = a.height_m + (static_cast<double>(row) - a.row) * per_row;
-        for (std::int64_t column = first; column <= last; ++column) {
-          const double height_m = field.row(row)[column];
-          if (std::isnan(height_m)) continue;
-          const double z = at_row + (static_cast<double>(column) - a.column) * per_column;
-          worst = std::max(worst, std::abs(z - height_m));
-        }
+  const bool is_within = for_each_sample(
+      a, b, c, field, field.slack_cells, [&](std::size_t, const FieldSample& sample) {
+        const double z =
+            a.height_m + (sample.column - a.column) * per_column + (sample.row - a.row) * per_row;
+        worst = std::max(worst, std::abs(z - sample.height_m));
         return worst <= limit_m;
       });
   return is_within ? worst : std::numeric_limits<double>::infinity();

@@ -42,6 +42,8 @@ class CoveredSamples {
   }
 
  private:
+  void claim(TriangleId t, const FieldSample& sample);
+
   std::vector<CoveredSample> samples_;
   IdVector<TriangleId, std::uint32_t> first_;
 };

@@ -7,20 +7,45 @@
 #include <utility>
 #include <vector>
 
+#include "core/height_grid.h"
 #include "hierarchy/mesh/grid_point.h"
 
 namespace terrane::hierarchy {
 
-/// What a mesh is measured against: a height for each sample of a tile, in metres over a datum that
-/// curves with the Earth (so that a flat triangle is linear in it); NaN where there is none.
+/// One sample that a mesh is held against.
+struct FieldSample {
+  float column = 0;  ///< in cells
+  float row = 0;
+  double height_m = 0;  ///< NaN where there is none
+};
+
+/// What a mesh is held against: the samples of a tile, heights in metres over a datum that curves
+/// with the Earth (so that a flat triangle is linear in it).
+///
+/// Where a tile has very many, some are kept, sorted into square blocks: a mesh near those is about
+/// as near to all, and whoever needs to be sure measures all of them afterwards.
 struct SampleField {
   std::int64_t columns = 0;
   std::int64_t rows = 0;
-  std::vector<double> heights_m;  ///< row by row
+  std::vector<double> heights_m;  ///< row by row, NaN for no data; empty if reduced
   /// Samples this near to a triangle, in cells, count as under it: by rounding, one on the outline
   /// may lie just outside. At least a little, as a sample on an edge is better met twice than
   /// never.
   double slack_cells = 1e-7;
+
+  std::int64_t block_cells = 1;
+  /// If reduced: those of block k, row by row of blocks, are kept[first_kept[k]] to
+  /// kept[first_kept[k + 1] - 1].
+  std::vector<FieldSample> kept = {};
+  std::vector<std::uint32_t> first_kept = {};
+
+  bool is_reduced() const { return block_cells > 1; }
+  /// Blocks along the columns and rows; the last may be smaller.
+  GridShape blocks() const {
+    return {(columns + block_cells - 1) / block_cells, (rows + block_cells - 1) / block_cells};
+  }
+  /// Reduces the field to some samples, none of them without a height.
+  void keep(std::int64_t block_side_cells, const std::vector<FieldSample>& samples);
 
   const double* row(std::int64_t r) const {
     return heights_m.data() + static_cast<std::ptrdiff_t>(r * columns);
@@ -38,12 +63,12 @@ struct FieldPoint {
 /// to it than \p slack_cells, in columns and rows. Stops and returns false as soon as visit does.
 template <class Visit>
 bool for_each_span(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
-                   const SampleField& field, double slack_cells, Visit&& visit) {
+                   const GridShape& shape, double slack_cells, Visit&& visit) {
   const double top = std::min({a.row, b.row, c.row}) - slack_cells;
   const double bottom = std::max({a.row, b.row, c.row}) + slack_cells;
   const auto first_row = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(top)));
   const auto last_row =
-      std::min<std::int64_t>(field.rows - 1, static_cast<std::int64_t>(std::floor(bottom)));
+      std::min<std::int64_t>(shape.rows - 1, static_cast<std::int64_t>(std::floor(bottom)));
   const std::pair<const FieldPoint*, const FieldPoint*> sides[3] = {{&a, &b}, {&b, &c}, {&c, &a}};
 
   for (std::int64_t row = first_row; row <= last_row; ++row) {
@@ -67,10 +92,66 @@ bool for_each_span(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c
     const auto first =
         std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(left - slack_cells)));
     const auto last = std::min<std::int64_t>(
-        field.columns - 1, static_cast<std::int64_t>(std::floor(right + slack_cells)));
+        shape.columns - 1, static_cast<std::int64_t>(std::floor(right + slack_cells)));
     if (first <= last && !visit(row, first, last)) return false;
   }
   return true;
+}
+
+/// Calls visit(number of the sample, sample) for each sample of the field under the triangle or
+/// nearer to it than \p slack_cells; numbers count from 0 over the whole field. Stops and returns
+/// false as soon as visit does. Samples without data are left out.
+template <class Visit>
+bool for_each_sample(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
+                     const SampleField& field, double slack_cells, Visit&& visit) {
+  if (!field.is_reduced()) {
+    return for_each_span(a, b, c, {field.columns, field.rows}, slack_cells,
+                         [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+                           const double* heights = field.row(row);
+                           for (std::int64_t column = first; column <= last; ++column) {
+                             if (std::isnan(heights[column])) continue;
+                             if (!visit(static_cast<std::size_t>(row * field.columns + column),
+                                        FieldSample{static_cast<float>(column),
+                                                    static_cast<float>(row), heights[column]})) {
+                               return false;
+                             }
+                           }
+                           return true;
+                         });
+  }
+  const auto side = static_cast<double>(field.block_cells);
+  const auto in_blocks = [&](const FieldPoint& p) {
+    return FieldPoint{(p.column - (side - 1) / 2) / side, (p.row - (side - 1) / 2) / side, 0};
+  };
+  const auto reach = [&](const FieldPoint& p, const FieldPoint& q) {
+    return slack_cells * std::hypot(q.column - p.column, q.row - p.row);
+  };
+  const auto beside = [](const FieldPoint& p, const FieldPoint& q, double column, double row) {
+    return (q.row - p.row) * (column - p.column) - (q.column - p.column) * (row - p.row);
+  };
+  const double turn = beside(a, b, c.column, c.row) > 0 ? 1 : -1;
+  const auto is_outside = [&](const FieldPoint& p, const FieldPoint& q, const FieldSample& s,
+                              double nearest) {
+    return turn * beside(p, q, s.column, s.row) < nearest;
+  };
+  const double ab = -reach(a, b), bc = -reach(b, c), ca = -reach(c, a);
+  const std::int64_t row_of_blocks = field.blocks().columns;
+  // half a block's diagonal takes in whatever lies in a block
+  return for_each_span(
+      in_blocks(a), in_blocks(b), in_blocks(c), field.blocks(), 0.75 + slack_cells / side,
+      [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+        const auto begin = static_cast<std::size_t>(row * row_of_blocks + first);
+        const auto end = static_cast<std::size_t>(row * row_of_blocks + last + 1);
+        for (std::size_t k = field.first_kept[begin]; k < field.first_kept[end]; ++k) {
+          const FieldSample& sample = field.kept[k];
+          if (is_outside(a, b, sample, ab) || is_outside(b, c, sample, bc) ||
+              is_outside(c, a, sample, ca)) {
+            continue;
+          }
+          if (!visit(k, sample)) return false;
+        }
+        return true;
+      });
 }
 
 }  // namespace terrane::hierarchy

@@ -228,17 +228,11 @@ bool is_within(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
   const double cx = c.column - a.column, cy = c.row - a.row, cz = c.height_m - a.height_m;
   const double scale = 1 / (bx * cy - by * cx);
   const double per_column = (bz * cy - by * cz) * scale, per_row = (bx * cz - bz * cx) * scale;
-  return for_each_span(
-      a, b, c, field, field.slack_cells,
-      [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-        const double* heights = field.row(row);
-        const double at_row = a.height_m + (static_cast<double>(row) - a.row) * per_row;
-        for (std::int64_t column = first; column <= last; ++column) {
-          const double z = at_row + (static_cast<double>(column) - a.column) * per_column;
-          // written so that NaN, no data, passes
-          if (std::abs(z - heights[column]) > tolerance_m) return false;
-        }
-        return true;
+  return for_each_sample(
+      a, b, c, field, field.slack_cells, [&](std::size_t, const FieldSample& sample) {
+        const double z =
+            a.height_m + (sample.column - a.column) * per_column + (sample.row - a.row) * per_row;
+        return std::abs(z - sample.height_m) <= tolerance_m;
       });
 }
 

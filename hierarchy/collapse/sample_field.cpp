@@ -1,0 +1,24 @@
+#include "hierarchy/collapse/sample_field.h"
+
+#include <numeric>
+
+namespace terrane::hierarchy {
+
+void SampleField::keep(std::int64_t block_side_cells, const std::vector<FieldSample>& samples) {
+  block_cells = block_side_cells;
+  heights_m.clear();
+  const auto block_of = [this](const FieldSample& sample) {
+    const auto side = static_cast<std::size_t>(block_cells);
+    return static_cast<std::size_t>(sample.row) / side *
+               static_cast<std::size_t>(blocks().columns) +
+           static_cast<std::size_t>(sample.column) / side;
+  };
+  first_kept.assign(static_cast<std::size_t>(blocks().columns * blocks().rows) + 1, 0);
+  for (const FieldSample& sample : samples) ++first_kept[block_of(sample) + 1];
+  std::partial_sum(first_kept.begin(), first_kept.end(), first_kept.begin());
+  std::vector<std::uint32_t> free(first_kept.begin(), first_kept.end() - 1);
+  kept.resize(samples.size());
+  for (const FieldSample& sample : samples) kept[free[block_of(sample)]++] = sample;
+}
+
+}  // namespace terrane::hierarchy
