@@ -15,17 +15,23 @@ constexpr std::uint32_t kSmallestApexValenceOfEdge = 4;
 
 }  // namespace
 
-StencilWalker::StencilWalker(const HalfedgeMesh& mesh) : mesh_(mesh) {}
+StencilWalker::StencilWalker(const HalfedgeMesh& mesh, CornerTriangles corner_triangles)
+    : mesh_(mesh), corner_triangles_(corner_triangles) {}
 
 Collapsibility StencilWalker::around_triangle(TriangleId triangle, Stencil& stencil) {
   stencil.polygon.clear();
   stencil.spokes.clear();
   stencil.core_size = 3;
+  bool has_corner = false;
   for (std::uint32_t k = 0; k < 3; ++k) {
     const HalfedgeId side = HalfedgeMesh::halfedge(triangle, k);
     stencil.dying[k] = mesh_.opposite(side);
     stencil.core[k] = mesh_.start(side);
-    if (mesh_.valence(stencil.core[k]) <= 3) return Collapsibility::kCyclic;
+    if (mesh_.valence(stencil.core[k]) <= 3) has_corner = true;
+  }
+  if (has_corner) {
+    if (corner_triangles_ == CornerTriangles::kStay) return Collapsibility::kCyclic;
+    if (!leaves_enough_edges(stencil)) return Collapsibility::kValence;
   }
   for (const HalfedgeId h : stencil.dying) {
     const VertexId apex = mesh_.apex(h);
@@ -63,6 +69,17 @@ void StencilWalker::walk(HalfedgeId from_dying, TriangleId to, Stencil& stencil)
     stencil.polygon.push_back(mesh_.end(spoke));
     spoke = mesh_.rotate(spoke);
   }
+}
+
+/// Two sides of a triangle at a corner of valence 3 have one apex, which loses two edges.
+bool StencilWalker::leaves_enough_edges(const Stencil& stencil) const {
+  return std::ranges::all_of(stencil.dying, [&](HalfedgeId h) {
+    const VertexId apex = mesh_.apex(h);
+    const auto lost = std::ranges::count(stencil.dying, apex,
+                                         [&](HalfedgeId other) { return mesh_.apex(other); });
+    const std::uint32_t smallest = (mesh_.is_ghost(apex) ? 4U : kSmallestApexValence) - 1;
+    return mesh_.valence(apex) >= smallest + static_cast<std::uint32_t>(lost);
+  });
 }
 
 bool StencilWalker::is_simple(const Stencil& stencil) {

@@ -35,10 +35,15 @@ struct Stencil {
   std::span<const VertexId> core_span() const { return {core.data(), core_size}; }
 };
 
+/// May a triangle with a corner of valence 3 collapse: one at a corner of the border (type 3 of P1,
+/// section 4.4), or one of the three of a cycle? Its stencil is complete without the cycle.
+enum class CornerTriangles : std::uint8_t { kStay, kMayCollapse };
+
 /// Walks stencils; keeps the scratch space, so that a walk does not allocate.
 class StencilWalker {
  public:
-  explicit StencilWalker(const HalfedgeMesh& mesh);
+  explicit StencilWalker(const HalfedgeMesh& mesh,
+                         CornerTriangles corner_triangles = CornerTriangles::kStay);
 
   /// Fills \p stencil with the surroundings of a live triangle that is no ghost.
   /// \return kYes if it is complete: connected, acyclic, its polygon simple and without a corner of
@@ -52,8 +57,10 @@ class StencilWalker {
  private:
   void walk(HalfedgeId from_dying, TriangleId to, Stencil& stencil) const;
   bool is_simple(const Stencil& stencil);
+  bool leaves_enough_edges(const Stencil& stencil) const;
 
   const HalfedgeMesh& mesh_;
+  CornerTriangles corner_triangles_;
   std::vector<std::uint32_t> seen_;
   std::uint32_t stamp_ = 0;
 };

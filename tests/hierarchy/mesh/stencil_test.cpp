@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/hierarchy/test_meshes.h"
 
 namespace terrane::hierarchy {
@@ -51,6 +53,27 @@ TEST(Stencil, OfATriangleWithANeighbourApexOfValenceFourIsRefused) {
   StencilWalker walker(mesh);
   Stencil stencil;
   EXPECT_EQ(walker.around_triangle(TriangleId{0}, stencil), Collapsibility::kValence);
+}
+
+TEST(Stencil, OfATriangleAtACornerOfTheBorderIsCompleteWhereItMayCollapse) {
+  // 5 x 5 samples whose last cell is cut across: one triangle holds both border edges at the corner
+  std::vector<Corners> triangles = triangles_of(5, 5);
+  std::erase_if(triangles, [](const Corners& t) {
+    return std::ranges::count_if(
+               t, [](auto v) { return v == 18 || v == 19 || v == 23 || v == 24; }) == 3;
+  });
+  const Corners corner{19, 23, 24};
+  triangles.push_back({18, 23, 19});
+  triangles.push_back(corner);
+  HalfedgeMesh mesh(25, triangles);
+  const TriangleId t{static_cast<std::uint32_t>(triangles.size()) - 1};
+  Stencil stencil;
+  EXPECT_EQ(StencilWalker(mesh).around_triangle(t, stencil), Collapsibility::kCyclic);
+  ASSERT_EQ(StencilWalker(mesh, CornerTriangles::kMayCollapse).around_triangle(t, stencil),
+            Collapsibility::kYes);
+  mesh.collapse(stencil.spokes, stencil.dying_span(), VertexId{24});
+  EXPECT_EQ(mesh.triangles().size(), triangles.size() - 2) << "two of the four were outside";
+  EXPECT_TRUE(mesh.is_boundary(VertexId{24}));
 }
 
 TEST(Stencil, OfATriangleThatJoinsTwoPartsOfABoundaryIsRefused) {
