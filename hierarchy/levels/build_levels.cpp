@@ -1,0 +1,375 @@
+#include "hierarchy/levels/build_levels.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "core/errors.h"
+#include "hierarchy/levels/collapse_judge.h"
+#include "hierarchy/levels/number_sequence.h"
+#include "hierarchy/levels/triangle_weight.h"
+
+namespace terrane::hierarchy {
+namespace {
+
+void check(const LevelOptions& options) {
+  const Weights& w = options.weights;
+  for (const double share : {w.curvature, w.angle, w.valence, w.error}) {
+    if (!(share >= 0 && share <= 1)) {
+      throw ConfigError(fmt::format("weight {}: has to lie between 0 and 1", share));
+    }
+  }
+  if (!(options.share > 0 && options.share <= 1)) {
+    throw ConfigError(fmt::format("--share {}: has to lie above 0 and not above 1", options.share));
+  }
+  if (options.jobs < 0) throw ConfigError(fmt::format("--jobs {}: is negative", options.jobs));
+}
+
+/// A triangle with its weight, or what it cannot be below, to be put in order.
+struct Entry {
+  double key;
+  std::uint32_t triangle;
+
+  bool operator<(const Entry& other) const {
+    return key != other.key ? key < other.key : triangle < other.triangle;
+  }
+};
+
+/// A collapse that has been chosen; done when all of the level are.
+struct Chosen {
+  TriangleId triangle;
+  CollapsePlan plan;
+};
+
+class LevelBuilder {
+ public:
+  LevelBuilder(const SurfaceMesh& finest, const LevelOptions& options)
+      : options_(options),
+        level_(finest),
+        judges_([this] { return CollapseJudge(level_, options_.rules); }),
+        judge_(level_, options.rules),
+        surfaces_(level_.mesh.triangle_count()),
+        keys_(level_.mesh.triangle_count()),
+        areas_(level_.mesh.triangle_count()),
+        state_(level_.mesh.triangle_count(), State::kBounded),
+        taken_(level_.mesh.vertex_count(), 0),
+        rejected_at_(level_.mesh.triangle_count(), 0),
+        rejected_for_(level_.mesh.triangle_count(), Rejection::kOverlap),
+        changed_at_(level_.mesh.vertex_count(), 0),
+        lost_edges_(level_.mesh.vertex_count(), 0) {}
+
+  LevelSequence run() {
+    begin();
+    for (std::uint32_t i = 1; i <= options_.most_levels; ++i) {
+      if (level_.mesh.live_triangle_count() <= options_.fewest_triangles) break;
+      if (!build_level(i)) break;
+    }
+    LevelSequence sequence = number_sequence(level_, records_);
+    if (is_last_unwanted_) drop_coarsest(sequence);
+    return sequence;
+  }
+
+ private:
+  enum class State : std::uint8_t {
+    kBounded,  ///< the key is a lower bound: nothing is known of the surface
+    kFitted,   ///< a lower bound, but the surface is known
+    kKnown,    ///< the key is the weight
+  };
+
+  /// Fits all triangles, for the largest curvature, and bounds their weights.
+  void begin() {
+    const std::uint32_t count = level_.mesh.triangle_count();
+    for_each_index(count, [&](CollapseJudge& judge, std::size_t i) {
+      const TriangleId t{static_cast<std::uint32_t>(i)};
+      if (level_.mesh.is_ghost(t)) return;
+      bound(t);
+      fit(judge, t);
+    });
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (state_[i] == State::kFitted) {
+        largest_curvature_ = std::max(largest_curvature_, surfaces_[i].absolute_curvature());
+      }
+      if (!level_.mesh.is_ghost(TriangleId{i})) candidates_.push_back(i);
+    }
+  }
+
+  /// Calls work(judge, i) for i < count, on all threads.
+  template <class Work>
+  void for_each_index(std::size_t count, Work work) {
+    if (options_.jobs == 1) {
+      for (std::size_t i = 0; i < count; ++i) work(judge_, i);
+      return;
+    }
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256), [&](const auto& range) {
+      CollapseJudge& judge = judges_.local();
+      for (std::size_t i = range.begin(); i < range.end(); ++i) work(judge, i);
+    });
+  }
+
+  /// Sets the key to what the weight cannot be below: curvature and error are never negative.
+  void bound(TriangleId t) {
+    const HalfedgeId h = HalfedgeMesh::halfedge(t, 0);
+    const VertexId a = level_.mesh.start(h), b = level_.mesh.end(h), c = level_.mesh.apex(h);
+    const TriangleShape shape = shape_of(level_.point(a), level_.point(b), level_.point(c));
+    const int valence =
+        static_cast<int>(level_.mesh.valence(a) + level_.mesh.valence(b) + level_.mesh.valence(c)) -
+        9;
+    areas_[index(t)] = shape.area;
+    keys_[index(t)] = shape.area * (options_.weights.angle * shape.angle +
+                                    options_.weights.valence * valence_term(valence));
+    state_[index(t)] = State::kBounded;
+  }
+
+  void fit(CollapseJudge& judge, TriangleId t) {
+    if (state_[index(t)] != State::kBounded) return;
+    const auto frame = judge.frame(t);
+    surfaces_[index(t)] = frame ? judge.surface(t, *frame) : LocalSurface();
+    state_[index(t)] = State::kFitted;
+  }
+
+  /// Works out the weight. A triangle that may not collapse keeps its bound.
+  void weigh(CollapseJudge& judge, TriangleId t) {
+    if (state_[index(t)] == State::kKnown || is_taken(t) || is_known_to_be_rejected(t)) return;
+    fit(judge, t);
+    const LocalSurface& surface = surfaces_[index(t)];
+    double terms = 0;
+    if (largest_curvature_ > 0) {
+      terms = options_.weights.curvature * surface.absolute_curvature() / largest_curvature_;
+    }
+    if (options_.weights.error > 0) {
+      const auto frame = judge.frame(t);
+      const auto plan = frame ? judge.plan(t, *frame, surface) : std::nullopt;
+      if (!plan) {
+        reject(t, frame ? judge.rejection() : Rejection::kFlat);
+        return;
+      }
+      terms += options_.weights.error * judge.predictive_error(*frame, surface, *plan);
+    }
+    keys_[index(t)] += areas_[index(t)] * terms;
+    state_[index(t)] = State::kKnown;
+  }
+
+  /// Does the stencil of a triangle meet one that was taken at this level? All of that one's
+  /// triangles touch its core, so a shared one joins a corner of t to it: that corner is in its
+  /// core or on its polygon.
+  bool is_taken(TriangleId t) const {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (taken_[index(level_.mesh.start(HalfedgeMesh::halfedge(t, k)))] == number_) return true;
+    }
+    return false;
+  }
+
+  void reject(TriangleId t, Rejection why) {
+    rejected_at_[index(t)] = number_;
+    rejected_for_[index(t)] = why;
+  }
+
+  /// Rejected before, and nothing about its corners has changed since?
+  bool is_known_to_be_rejected(TriangleId t) const {
+    const std::uint32_t at = rejected_at_[index(t)];
+    if (at == 0) return false;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (changed_at_[index(level_.mesh.start(HalfedgeMesh::halfedge(t, k)))] >= at) return false;
+    }
+    return true;
+  }
+
+  bool build_level(std::uint32_t number) {
+    number_ = number;
+    statistics_ = {.level = number};
+    choose();
+    if (chosen_.empty()) return false;
+    commit();
+    statistics_.collapses = static_cast<std::uint32_t>(chosen_.size());
+    statistics_.triangles = level_.mesh.live_triangle_count();
+    is_last_unwanted_ = options_.keep && !options_.keep(statistics_);
+    return !is_last_unwanted_;
+  }
+
+  /// Takes triangles in the order of their weights until the share is reached.
+  void choose() {
+    chosen_.clear();
+    std::erase_if(candidates_, [&](auto i) { return !level_.mesh.is_live(TriangleId{i}); });
+    order_.clear();
+    for (const std::uint32_t i : candidates_) order_.push_back({keys_[i], i});
+    const auto wanted = static_cast<std::size_t>(
+        std::max(1.0, std::round(options_.share * static_cast<double>(order_.size()))));
+    const std::size_t portion = std::max<std::size_t>(64, 4 * wanted);
+    std::size_t done = 0;
+    while (chosen_.size() < wanted && done < order_.size()) {
+      const std::size_t end = std::min(order_.size(), done + portion);
+      const std::size_t ready = sort_portion(done, end);
+      for (; done < ready && chosen_.size() < wanted; ++done) {
+        consider(TriangleId{order_[done].triangle});
+      }
+    }
+  }
+
+  /// Brings the next triangles of the order into [begin, the result): by weight, ties by number.
+  std::size_t sort_portion(std::size_t begin, std::size_t end) {
+    const auto first = order_.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = order_.begin() + static_cast<std::ptrdiff_t>(end);
+    double bound = std::numeric_limits<double>::infinity();
+    if (last != order_.end()) {
+      std::nth_element(first, last - 1, order_.end());
+      bound = (last - 1)->key;
+    }
+    for_each_index(end - begin, [&](CollapseJudge& judge, std::size_t i) {
+      Entry& entry = order_[begin + i];
+      weigh(judge, TriangleId{entry.triangle});
+      entry.key = keys_[entry.triangle];
+    });
+    // what turned out heavier than the bound may come after triangles of the next portions
+    const auto ready = std::partition(first, last, [&](const Entry& e) { return e.key <= bound; });
+    std::sort(first, ready);
+    return static_cast<std::size_t>(ready - order_.begin());
+  }
+
+  void consider(TriangleId t) {
+    if (is_taken(t)) return count(Rejection::kOverlap);
+    if (is_known_to_be_rejected(t)) return count(rejected_for_[index(t)]);
+    const auto frame = judge_.frame(t);
+    if (!frame) {
+      reject(t, Rejection::kFlat);
+      return count(Rejection::kFlat);
+    }
+    const auto plan = judge_.plan(t, *frame, surfaces_[index(t)]);
+    if (!plan) {
+      reject(t, judge_.rejection());
+      return count(judge_.rejection());
+    }
+    if (!apexes_can_spare_an_edge()) return count(Rejection::kValence);
+    take(t, *plan);
+  }
+
+  void count(Rejection why) { ++statistics_.rejected[static_cast<std::size_t>(why)]; }
+
+  /// Stencils that do not meet may still share an apex: it loses an edge to each.
+  bool apexes_can_spare_an_edge() const {
+    return std::ranges::all_of(judge_.stencil().dying, [&](HalfedgeId h) {
+      const VertexId apex = level_.mesh.apex(h);
+      if (level_.mesh.is_ghost(apex)) return level_.mesh.valence(apex) >= 5 + ghost_loss(apex);
+      return lost_edges_[index(apex)] == 0 ||
+             level_.mesh.valence(apex) >= 5U + lost_edges_[index(apex)];
+    });
+  }
+
+  std::uint32_t ghost_loss(VertexId apex) const {
+    const auto at = ghost_losses_.find(apex);
+    return at == ghost_losses_.end() ? 0 : at->second;
+  }
+
+  void take(TriangleId t, const CollapsePlan& plan) {
+    const Stencil& stencil = judge_.stencil();
+    for (const VertexId v : stencil.core) taken_[index(v)] = number_;
+    for (const VertexId v : stencil.polygon) {
+      if (!level_.mesh.is_ghost(v)) taken_[index(v)] = number_;
+    }
+    for (const HalfedgeId h : stencil.dying) {
+      const VertexId apex = level_.mesh.apex(h);
+      if (level_.mesh.is_ghost(apex)) {
+        ++ghost_losses_[apex];
+      } else {
+        ++lost_edges_[index(apex)];
+      }
+    }
+    chosen_.push_back({t, plan});
+  }
+
+  /// Collapses all that were chosen, then looks at the new stars.
+  void commit() {
+    records_.emplace_back();
+    modified_.clear();
+    StencilWalker walker(level_.mesh, CornerTriangles::kMayCollapse);
+    for (const Chosen& chosen : chosen_) collapse(walker, chosen);
+    for (const TriangleId t : modified_) bound(t);
+    std::ranges::fill(lost_edges_, 0);
+    ghost_losses_.clear();
+  }
+
+  void collapse(StencilWalker& walker, const Chosen& chosen) {
+    walker.around_triangle(chosen.triangle, stencil_);
+    Collapse record;
+    bool is_on_border = false;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = (chosen.plan.kept + k) % 3;
+      const VertexId corner = stencil_.core[from];
+      const VertexId apex = level_.mesh.apex(stencil_.dying[from]);
+      record.corners[k] = static_cast<std::uint32_t>(corner);
+      record.apexes[k] = level_.mesh.is_ghost(apex) ? kOutside : static_cast<std::uint32_t>(apex);
+      record.before[k] = level_.lattice.steps(level_.point(corner));
+      is_on_border = is_on_border || level_.on_border[index(corner)];
+    }
+    record.after = level_.lattice.steps(chosen.plan.point);
+    records_.back().push_back(record);
+
+    const VertexId kept = stencil_.core[chosen.plan.kept];
+    for (const VertexId v : stencil_.core) {
+      if (v != kept) level_.ancestors.join(kept, v);
+    }
+    level_.mesh.collapse(stencil_.spokes, stencil_.dying_span(), kept);
+    level_.points[index(kept)] = chosen.plan.point;
+    level_.on_border[index(kept)] = is_on_border;
+    note_changes(kept);
+  }
+
+  void note_changes(VertexId kept) {
+    changed_at_[index(kept)] = number_;
+    for (const VertexId v : stencil_.polygon) {
+      if (!level_.mesh.is_ghost(v)) changed_at_[index(v)] = number_;
+    }
+    for (const HalfedgeId h : stencil_.spokes) {
+      const TriangleId t = HalfedgeMesh::triangle(h);
+      if (!level_.mesh.is_ghost(t)) modified_.push_back(t);
+    }
+  }
+
+  const LevelOptions& options_;
+  LevelMesh level_;
+  tbb::enumerable_thread_specific<CollapseJudge> judges_;
+  CollapseJudge judge_;
+
+  std::vector<LocalSurface> surfaces_;
+  std::vector<double> keys_;
+  std::vector<double> areas_;
+  std::vector<State> state_;
+  double largest_curvature_ = 0;
+  std::vector<std::uint32_t> candidates_;  // live triangles, by number
+  std::vector<Entry> order_;
+
+  std::uint32_t number_ = 0;                // of the level under construction
+  std::vector<std::uint32_t> taken_;        // level at which a vertex was in a taken stencil
+  std::vector<std::uint32_t> rejected_at_;  // level, 0: never
+  std::vector<Rejection> rejected_for_;
+  std::vector<std::uint32_t> changed_at_;  // level that last changed a vertex's surroundings
+  std::vector<std::uint8_t> lost_edges_;   // of a vertex, to the stencils taken at this level
+  std::map<VertexId, std::uint32_t> ghost_losses_;
+
+  std::vector<Chosen> chosen_;
+  Stencil stencil_;
+  std::vector<TriangleId> modified_;
+  std::vector<std::vector<Collapse>> records_;
+  LevelStatistics statistics_;
+  bool is_last_unwanted_ = false;
+};
+
+}  // namespace
+
+LevelSequence build_levels(const SurfaceMesh& finest, const LevelOptions& options) {
+  check(options);
+  if (finest.triangles.empty()) throw TopologyError("the mesh has no triangle");
+  // TBB prints a warning where more threads are asked for than there are cores
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(options.jobs == 0 ? cores : std::min(options.jobs, cores));
+  return arena.execute([&] { return LevelBuilder(finest, options).run(); });
+}
+
+}  // namespace terrane::hierarchy

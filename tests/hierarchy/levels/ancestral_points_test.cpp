@@ -1,0 +1,65 @@
+#include "hierarchy/levels/ancestral_points.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "hierarchy/mesh/stencil.h"
+#include "tests/hierarchy/levels/test_surfaces.h"
+
+namespace terrane::hierarchy {
+namespace {
+
+using Points = std::set<std::uint32_t>;
+
+Points corners_of(const HalfedgeMesh& mesh, TriangleId t) {
+  Points result;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    result.insert(static_cast<std::uint32_t>(mesh.start(HalfedgeMesh::halfedge(t, k))));
+  }
+  return result;
+}
+
+TEST(AncestralPoints, OfTheCornersAreThePapersSetsOfTheTriangle) {
+  const SurfaceMesh torus = testing::torus(12, 9);
+  HalfedgeMesh mesh(108, torus.triangles);
+  AncestralPoints ancestors(mesh.vertex_count());
+  // figure 21, word for word: T gets the points of T' and of the collapsed triangle
+  std::vector<Points> papers;
+  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+    papers.push_back(corners_of(mesh, TriangleId{t}));
+  }
+  std::mt19937 random(3);
+  StencilWalker walker(mesh);
+  Stencil stencil;
+  int collapses = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const TriangleId t{static_cast<std::uint32_t>(random() % mesh.triangle_count())};
+    if (!mesh.is_live(t) || walker.around_triangle(t, stencil) != Collapsibility::kYes) continue;
+    for (const HalfedgeId h : stencil.spokes) {
+      papers[index(HalfedgeMesh::triangle(h))].insert(papers[index(t)].begin(),
+                                                      papers[index(t)].end());
+    }
+    ancestors.join(stencil.core[0], stencil.core[1]);
+    ancestors.join(stencil.core[0], stencil.core[2]);
+    mesh.collapse(stencil.spokes, stencil.dying_span(), stencil.core[0]);
+    ++collapses;
+  }
+  ASSERT_GT(collapses, 10);
+  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+    if (!mesh.is_live(TriangleId{t})) continue;
+    Points ours;
+    std::size_t count = 0;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const VertexId v = mesh.start(HalfedgeMesh::halfedge(TriangleId{t}, k));
+      ancestors.for_each(v, [&](std::uint32_t p) { ours.insert(p); });
+      count += ancestors.count(v);
+    }
+    EXPECT_EQ(ours, papers[t]);
+    EXPECT_EQ(count, ours.size()) << "the sets of the corners are disjoint";
+  }
+}
+
+}  // namespace
+}  // namespace terrane::hierarchy
