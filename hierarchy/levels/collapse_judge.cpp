@@ -12,6 +12,12 @@ constexpr std::size_t kEnoughPoints = 12;
 /// A mesh that is still singular after so many rings is a plane, or tiny.
 constexpr int kMostRings = 4;
 
+/// A quadratic through few points may shoot far off: places stay where the lattice is exact.
+bool is_on_lattice(const Eigen::Vector3d& point, const PointLattice& lattice) {
+  constexpr double kMostSteps = 1 << 23;
+  return point.cwiseAbs().maxCoeff() < kMostSteps * lattice.step();
+}
+
 }  // namespace
 
 CollapseJudge::CollapseJudge(const LevelMesh& level, Rules rules)
@@ -97,7 +103,7 @@ std::optional<CollapsePlan> CollapseJudge::plan(TriangleId t, const TriangleFram
   }
   CollapsePlan plan{level_.lattice.round(collapse_point(*rule, frame, surface)),
                     rule->onto.value_or(0)};
-  if (!sees_polygon(plan.point, frame)) {
+  if (!is_on_lattice(plan.point, level_.lattice) || !sees_polygon(plan.point, frame)) {
     rejection_ = Rejection::kNotStarShaped;
     return std::nullopt;
   }

@@ -4,6 +4,7 @@
 Our share per level is one number for all rows: 0.03. docs/papers.md has the table side by side.
 """
 
+import json
 import os
 import pathlib
 import subprocess
@@ -62,8 +63,16 @@ class Table1(unittest.TestCase):
     def test_saddle(self):
         self.holds("saddle", self.generated("saddle", paper_meshes.saddle()))
 
-    def test_st_helens(self):
-        self.holds("st_helens", self.real("st_helens/SainteHelens_post1980_30m.dem"))
+    def test_st_helens_with_no_sample_uncovered_and_nothing_folded(self):
+        source = self.real("st_helens/SainteHelens_post1980_30m.dem")
+        report = self.folder / "report.json"
+        original, _ = self.triangles(source, 30, "--report", report)
+        levels = json.loads(report.read_text())["levels"]
+        for level, paper in ROWS["st_helens"]:
+            self.assertAlmostEqual(100 * levels[level - 1]["triangles"] / original, paper,
+                                   delta=PER_CENT_OF_THE_ORIGINAL)
+        for level in levels:
+            self.assertEqual((level["uncovered"], level["folded"]), (0, 0))
 
     def test_st_helens_by_the_published_rules(self):
         source = self.real("st_helens/SainteHelens_post1980_30m.dem")
