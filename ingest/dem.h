@@ -13,6 +13,8 @@
 
 namespace terrane::ingest {
 
+struct WaterBody;
+
 /// What a user says about a DEM; each wins over what its files say.
 struct OpenOptions {
   /// Band that holds the heights, from 1. Needed only for files with several.
@@ -68,6 +70,9 @@ class Dem {
       std::unique_ptr<HeightSource> heights, std::unique_ptr<Georeference> place);
 
   const HeightSource& heights() const { return *heights_; }
+
+  /// Puts every sample of some water at its height from now on: see water_level.h.
+  void level_water(const std::vector<WaterBody>& bodies);
   const Georeference& place() const { return *place_; }
 
   /// File name without its folders, or "a.tif and 1 more".

@@ -10,6 +10,7 @@
 #include "ingest/mosaic.h"
 #include "ingest/raster_file.h"
 #include "ingest/synthetic.h"
+#include "ingest/water_level.h"
 
 namespace terrane::ingest {
 namespace {
@@ -64,6 +65,10 @@ Dem::Dem(std::string name, DemDescription description, std::vector<SuspectHeight
       suspects_(std::move(suspects)),
       heights_(std::move(heights)),
       place_(std::move(place)) {}
+
+void Dem::level_water(const std::vector<WaterBody>& bodies) {
+  heights_ = ingest::level_water(std::move(heights_), bodies);
+}
 
 std::unique_ptr<Dem> open_dem(const std::vector<std::string>& sources, const OpenOptions& options,
                               Progress& progress) {
