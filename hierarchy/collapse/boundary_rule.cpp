@@ -43,6 +43,8 @@ bool may_give_way(VertexId v, VertexId onto, const OutlineNeighbours& neighbours
   if (moving.kind != VertexKind::kOutline) return false;
   for (const VertexId other : {neighbours.before, neighbours.after}) {
     const TerrainVertex& far_end = vertices[index(other)];
+    // where a line ends on the outline between two samples, the outline stays as it is
+    if (target.sample.column < 0 || far_end.sample.column < 0) continue;
     if (is_between(moving.sample, target.sample, far_end.sample)) {
       return placer.is_straight(target.place, far_end.place);
     }
@@ -53,7 +55,8 @@ bool may_give_way(VertexId v, VertexId onto, const OutlineNeighbours& neighbours
 }  // namespace
 
 BoundaryVerdict classify(const Stencil& stencil, const HalfedgeMesh& mesh,
-                         std::span<const TerrainVertex> vertices, const Placer& placer) {
+                         std::span<const TerrainVertex> vertices, const Placer& placer,
+                         const LineChains* lines) {
   std::array<VertexId, 3> on_line{};
   std::size_t count = 0;
   for (const VertexId v : stencil.core_span()) {
@@ -62,9 +65,15 @@ BoundaryVerdict classify(const Stencil& stencil, const HalfedgeMesh& mesh,
   if (count == 0) return {BoundaryType::kInterior, std::nullopt};
   if (count == 1) return {BoundaryType::kVertex, on_line[0]};
 
-  const auto neighbours = outline_neighbours(stencil, mesh);
-  if (count == 3 || !neighbours) return {};
+  if (count == 3) return {};
   const auto [a, b] = std::pair{on_line[0], on_line[1]};
+  if (lines != nullptr && lines->joins(a, b)) {
+    if (lines->may_drop(b, a, vertices)) return {BoundaryType::kEdge, a};
+    if (lines->may_drop(a, b, vertices)) return {BoundaryType::kEdge, b};
+    return {};
+  }
+  const auto neighbours = outline_neighbours(stencil, mesh);
+  if (!neighbours) return {};
   if (!share_outline_edge(stencil, mesh, a, b)) return {};
   if (may_give_way(b, a, *neighbours, vertices, placer)) return {BoundaryType::kEdge, a};
   if (may_give_way(a, b, *neighbours, vertices, placer)) return {BoundaryType::kEdge, b};

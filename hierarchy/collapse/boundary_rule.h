@@ -3,12 +3,13 @@
 #include <optional>
 #include <span>
 
+#include "hierarchy/collapse/line_chains.h"
 #include "hierarchy/collapse/terrain_mesh.h"
 #include "hierarchy/mesh/stencil.h"
 
 namespace terrane::hierarchy {
 
-/// How a core lies to the lines of a mesh (outline and seams).
+/// How a core lies to the lines of a mesh (outline, seams and features).
 ///
 /// \par Source
 /// Gieng et al. 1998, section 3.3: boundary types 1 to 4.
@@ -27,10 +28,12 @@ struct BoundaryVerdict {
 
 /// Decides from the kinds of the core's corners. A corner on the outline gives way only along a
 /// straight run of samples, so no sample is ever uncovered and none is invented; a locked one
-/// never.
+/// never; one on a feature line only along that line (line_chains.h).
 ///
+/// \param lines  null if the mesh has no feature lines.
 /// \pre \p stencil is complete.
 BoundaryVerdict classify(const Stencil& stencil, const HalfedgeMesh& mesh,
-                         std::span<const TerrainVertex> vertices, const Placer& placer);
+                         std::span<const TerrainVertex> vertices, const Placer& placer,
+                         const LineChains* lines = nullptr);
 
 }  // namespace terrane::hierarchy

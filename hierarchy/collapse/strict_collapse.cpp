@@ -50,6 +50,7 @@ class StrictCollapse {
     for (std::uint32_t v = 0; v < vertices_.size(); ++v) {
       if (mesh_.is_split(VertexId{v})) vertices_[v].kind = VertexKind::kLocked;
     }
+    if (!input.lines.empty()) lines_.emplace(input.lines, vertices_.size(), options.lines);
     if (!finer.places.empty()) {
       guard_.emplace(split_like(mesh_, finer.places), finer.triangles, vertices_, field,
                      options.tolerance_m);
@@ -156,7 +157,8 @@ class StrictCollapse {
 
   Collapsibility try_collapse(Collapsibility complete) {
     if (complete != Collapsibility::kYes) return complete;
-    const BoundaryVerdict boundary = classify(stencil_, mesh_, vertices_, placer_);
+    const BoundaryVerdict boundary =
+        classify(stencil_, mesh_, vertices_, placer_, lines_ ? &*lines_ : nullptr);
     if (boundary.type == BoundaryType::kFixed) return Collapsibility::kBoundary;
     const auto best = best_place(boundary);
     if (!best) return refusal_;
@@ -260,12 +262,20 @@ class StrictCollapse {
     } else {
       for (const VertexId v : stencil_.core_span()) parent_[index(v)] = kept;
     }
+    if (lines_) move_along_line(kept);
     hand_over_samples();
     mesh_.collapse(stencil_.spokes, stencil_.dying_span(), kept);
     vertices_[index(kept)].place = place;
     changed_[index(kept)] = sweep_;
     for (const VertexId v : stencil_.polygon) {
       if (!mesh_.is_ghost(v)) changed_[index(v)] = sweep_;
+    }
+  }
+
+  /// A corner beside the kept one that is on its line has gone along the line.
+  void move_along_line(VertexId kept) {
+    for (const VertexId v : stencil_.core_span()) {
+      if (v != kept && lines_->joins(v, kept)) lines_->drop(v, kept, vertices_);
     }
   }
 
@@ -298,6 +308,11 @@ class StrictCollapse {
     for (Corners& corners : result_.mesh.triangles) {
       for (std::uint32_t& v : corners) v = number[v];
     }
+    if (lines_) result_.mesh.lines = lines_->edges();
+    for (LineEdge& edge : result_.mesh.lines) {
+      for (std::uint32_t& v : edge) v = number[v];
+      std::ranges::sort(edge);
+    }
     result_.target.resize(given_vertices);
     for (std::uint32_t v = 0; v < given_vertices; ++v) {
       result_.target[v] = number[index(target_of(v))];
@@ -313,6 +328,7 @@ class StrictCollapse {
   float smallest_altitude_cells_;
   CoveredSamples samples_;
   std::optional<MorphGuard> guard_;
+  std::optional<LineChains> lines_;
   std::vector<VertexId> parent_;  // level 0 only: where a vertex went, to be followed
 
   double tolerance_m_ = 0;  // of this sweep

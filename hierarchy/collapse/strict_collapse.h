@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hierarchy/collapse/finer_level.h"
+#include "hierarchy/collapse/line_chains.h"
 #include "hierarchy/collapse/sample_field.h"
 #include "hierarchy/collapse/terrain_mesh.h"
 #include "hierarchy/mesh/stencil.h"
@@ -17,6 +18,8 @@ struct StrictOptions {
   double tolerance_m = 1;
   /// Smallest altitude in plan of a new triangle, in cells: rounding must not turn it over.
   double smallest_altitude_cells = 0;
+  /// How far the mesh's feature lines may move in plan.
+  LineTolerance lines;
 };
 
 /// What became of a mesh.

@@ -7,6 +7,7 @@
 #include "hierarchy/mesh/grid_point.h"
 #include "hierarchy/mesh/grid_triangles.h"
 #include "hierarchy/mesh/halfedge_mesh.h"
+#include "hierarchy/mesh/lined_triangles.h"
 
 namespace terrane::hierarchy {
 
@@ -20,6 +21,7 @@ struct Place {
 enum class VertexKind : std::uint8_t {
   kInterior,
   kOutline,  ///< on the edge of the valid data; may slide along straight stretches of it
+  kFeature,  ///< on a line; may slide along it within the tolerance in plan
   kLocked,   ///< on a seam, a tile corner, or where two holes touch: stays
 };
 
@@ -32,6 +34,7 @@ struct TerrainVertex {
 struct TerrainMesh {
   std::vector<TerrainVertex> vertices;
   std::vector<Corners> triangles;  ///< counter-clockwise in GridPoint's plane
+  std::vector<LineEdge> lines;     ///< edges that stay edges; their ends are kFeature or kLocked
 };
 
 /// Rounds places to the written lattice.

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/grid_features.h"
+#include "core/height_grid.h"
+#include "hierarchy/mesh/grid_point.h"
+#include "hierarchy/mesh/grid_triangles.h"
+
+namespace terrane::hierarchy {
+
+/// A vertex that a line brings into the full-resolution mesh.
+struct LineVertex {
+  GridPoint plan;
+  double height_m = 0;
+};
+
+/// Two vertices that a line joins; the smaller number first.
+using LineEdge = std::array<std::uint32_t, 2>;
+
+/// A full-resolution mesh that holds lines as edges.
+struct LinedTriangles {
+  std::vector<SampleId> samples;          ///< the first vertices
+  std::vector<LineVertex> line_vertices;  ///< the further ones
+  std::vector<Corners> triangles;         ///< counter-clockwise in GridPoint's plane
+  std::vector<LineEdge> edges;
+};
+
+/// Joins the samples of a window to triangles, as triangulate() does, and splits the cells that
+/// lines pass through so that the lines are edges.
+///
+/// Every sample stays a vertex, so the mesh is as near to the samples as the one without lines is.
+/// Where a line crosses a side of a cell, its vertex is as high as that side; where it bends
+/// inside, as high as the triangle there; on a shore, as high as the water. Lines end where there
+/// is no triangle: with a vertex on the edge of the data that is no sample.
+///
+/// \pre the window lies in grid.window; lines are laid on the grid (core/grid_features.h).
+LinedTriangles triangulate_with_lines(const HeightGrid& grid, const Window& window,
+                                      std::span<const FeatureLine> lines);
+
+}  // namespace terrane::hierarchy
