@@ -31,6 +31,22 @@ void apply(const DemOptions& options, ingest::OpenOptions& settings) {
   if (options.crs) settings.crs = *options.crs;
 }
 
+void add_feature_options(CLI::App& command, DemOptions& options) {
+  command.add_option("--lines", options.lines,
+                     "Lines that the mesh keeps as edges, within the tolerance in plan: any vector "
+                     "file, or FILE:LAYER");
+  command.add_option("--water", options.water,
+                     "Polygons whose inside is one flat height and whose shore the mesh keeps");
+  command.add_option("--water-height", options.water_height_m,
+                     "Height of the water in metres [the median along its shore]");
+}
+
+void apply(const DemOptions& options, ingest::FeatureOptions& settings) {
+  if (!options.lines.empty()) settings.lines = options.lines;
+  if (!options.water.empty()) settings.water = options.water;
+  if (options.water_height_m) settings.water_height_m = options.water_height_m;
+}
+
 ingest::VerticalUnit vertical_unit_of(const std::string& word) {
   const auto unit = ingest::parse_vertical_unit(word);
   if (unit) return *unit;

@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/dem_options.h"
 #include "cli/terminal_progress.h"
+#include "ingest/features.h"
 #include "ingest/scan.h"
 #include "tiler/mesh_file.h"
 #include "tiler/simplify.h"
@@ -48,6 +49,9 @@ void run(const SimplifyCommand& command, const CommonOptions& common) {
   apply(command.dem, open_options);
   const auto progress = make_progress(common.quiet);
   const auto dem = ingest::open_dem(command.dem.dem, open_options, *progress);
+  ingest::FeatureOptions features{.plan_tolerance_m = options.tolerance_m};
+  apply(command.dem, features);
+  options.features = ingest::read_features(*dem, features, *progress);
   ingest::scan_heights(*dem, *progress);  // refuses voids that pass for heights
 
   const GridShape shape = dem->heights().shape();
@@ -69,6 +73,7 @@ void add_simplify_command(CLI::App& app, const CommonOptions& common) {
   CLI::App* simplify =
       app.add_subcommand("simplify", "Turn a DEM into one mesh with few triangles, without tiles");
   add_dem_options(*simplify, command->dem)->required();
+  add_feature_options(*simplify, command->dem);
   simplify
       ->add_option("-o,--out", command->out,
                    "Mesh to write: .obj or .ply in the DEM's CRS, .glb in local metres")

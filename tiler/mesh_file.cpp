@@ -68,6 +68,7 @@ std::string encode_obj(const TerrainMesh& mesh, const Georeference& place) {
   for (const auto& [a, b, c] : turned_up(mesh, runs_clockwise(place))) {
     fmt::format_to(end, "f {} {} {}\n", a + 1, b + 1, c + 1);
   }
+  for (const auto& [a, b] : mesh.lines) fmt::format_to(end, "l {} {}\n", a + 1, b + 1);
   return text;
 }
 
@@ -78,8 +79,13 @@ std::string encode_ply(const TerrainMesh& mesh, const Georeference& place) {
   if (!place.crs_wkt().empty()) bytes += fmt::format("comment CRS: {}\n", place.crs_wkt());
   bytes += fmt::format(
       "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
-      "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      "element face {}\nproperty list uchar int vertex_indices\n",
       mesh.vertices.size(), mesh.triangles.size());
+  if (!mesh.lines.empty()) {
+    bytes += fmt::format("element edge {}\nproperty int vertex1\nproperty int vertex2\n",
+                         mesh.lines.size());
+  }
+  bytes += "end_header\n";
   for (const hierarchy::TerrainVertex& vertex : mesh.vertices) {
     const PlanPosition plan = in_crs(vertex.place, place);
     append(bytes, std::array{plan.x, plan.y, vertex.place.height_m});
@@ -88,6 +94,7 @@ std::string encode_ply(const TerrainMesh& mesh, const Georeference& place) {
     append(bytes, std::uint8_t{3});
     append(bytes, corners);
   }
+  for (const hierarchy::LineEdge& edge : mesh.lines) append(bytes, edge);
   return bytes;
 }
 
@@ -181,6 +188,13 @@ std::string encode_plain_glb(const TerrainMesh& mesh, const Georeference& place,
                                    TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
                                    triangles.size() * 3);
   model.meshes.emplace_back().primitives = {primitive};
+  if (!mesh.lines.empty()) {
+    primitive.mode = TINYGLTF_MODE_LINE;
+    primitive.indices = add_accessor(model, mesh.lines, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER,
+                                     TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
+                                     mesh.lines.size() * 2);
+    model.meshes.back().primitives.push_back(primitive);
+  }
   tinygltf::Node node;
   node.mesh = 0;
   node.extras = origin_of(world);

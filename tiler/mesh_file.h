@@ -30,6 +30,7 @@ double height_steps_per_m(MeshFormat format);
 ///   2^-24 of the extent at most, heights are exact. Where the centre lies stands in the extras of
 ///   the node.
 ///
+/// Feature lines are line elements (OBJ `l`, PLY `edge`, a second primitive of a glb).
 /// \param shape  of the DEM that the mesh spans; plan is counted from its first sample.
 /// \throws InputError if the centre of the DEM has no longitude and latitude (glb).
 std::string encode_mesh(const hierarchy::TerrainMesh& mesh, MeshFormat format,

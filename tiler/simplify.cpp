@@ -54,25 +54,52 @@ SampleField field_of(const HeightGrid& grid) {
   return field;
 }
 
-/// Every sample a vertex; those on the edge of the data are marked as outline.
-TerrainMesh full_terrain(const HeightGrid& grid, const hierarchy::Placer& placer) {
-  hierarchy::GridTriangles full = hierarchy::triangulate(grid, grid.window);
-  TerrainMesh terrain{{}, std::move(full.triangles)};
-  terrain.vertices.reserve(full.vertices.size());
-  for (const hierarchy::SampleId& sample : full.vertices) {
+/// Every sample a vertex; those on the edge of the data are marked as outline, those on lines as
+/// feature.
+TerrainMesh full_terrain(const HeightGrid& grid, const std::vector<FeatureLine>& lines,
+                         const hierarchy::Placer& placer) {
+  hierarchy::LinedTriangles full = hierarchy::triangulate_with_lines(grid, grid.window, lines);
+  TerrainMesh terrain{{}, std::move(full.triangles), std::move(full.edges)};
+  terrain.vertices.reserve(full.samples.size() + full.line_vertices.size());
+  for (const hierarchy::SampleId& sample : full.samples) {
     const GridPoint plan{sample.column * hierarchy::kUnitsPerCell,
                          -sample.row * hierarchy::kUnitsPerCell};
     terrain.vertices.push_back({.place = placer.place(plan, grid.at(sample.column, sample.row))});
   }
-  const hierarchy::HalfedgeMesh mesh(static_cast<std::uint32_t>(full.vertices.size()),
+  for (const hierarchy::LineVertex& vertex : full.line_vertices) {
+    terrain.vertices.push_back({.place = placer.place(vertex.plan, vertex.height_m)});
+  }
+  for (const hierarchy::LineEdge& edge : terrain.lines) {
+    for (const std::uint32_t v : edge) terrain.vertices[v].kind = VertexKind::kFeature;
+  }
+  const hierarchy::HalfedgeMesh mesh(static_cast<std::uint32_t>(terrain.vertices.size()),
                                      terrain.triangles);
   for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
     if (!mesh.is_boundary(hierarchy::VertexId{v})) continue;
-    const std::uint32_t sample = mesh.origin(hierarchy::VertexId{v});
-    terrain.vertices[sample].kind = VertexKind::kOutline;
-    terrain.vertices[sample].sample = full.vertices[sample];
+    const std::uint32_t number = mesh.origin(hierarchy::VertexId{v});
+    hierarchy::TerrainVertex& vertex = terrain.vertices[number];
+    // where a line comes to the edge of the data, it stays
+    const bool is_on_line = vertex.kind == VertexKind::kFeature;
+    if (vertex.kind != VertexKind::kLocked) {
+      vertex.kind = is_on_line ? VertexKind::kLocked : VertexKind::kOutline;
+    }
+    if (number < full.samples.size()) vertex.sample = full.samples[number];
   }
   return terrain;
+}
+
+std::int64_t sample_count(const TerrainMesh& full) {
+  return std::ranges::count_if(full.vertices, [](const hierarchy::TerrainVertex& vertex) {
+    const GridPoint p = vertex.place.plan;
+    return p.x % hierarchy::kUnitsPerCell == 0 && p.y % hierarchy::kUnitsPerCell == 0;
+  });
+}
+
+/// What reading and rounding the lines have left of the tolerance.
+hierarchy::LineTolerance line_tolerance(const SimplifyOptions& options) {
+  const GridFeatures& features = options.features;
+  return {std::max(0.0, options.tolerance_m - features.off_plan_m), features.column_m,
+          features.row_m};
 }
 
 void judge(const GridError& error, std::int64_t samples, const SimplifyOptions& options) {
@@ -103,7 +130,7 @@ SimplifiedTerrain simplify(const HeightSource& heights, const SimplifyOptions& o
   check_size(shape);
   const HeightGrid grid = heights.read({0, 0, shape.columns, shape.rows});
   const FlatPlacer placer(options.height_steps_per_m);
-  const TerrainMesh full = full_terrain(grid, placer);
+  const TerrainMesh full = full_terrain(grid, options.features.lines, placer);
   if (full.triangles.empty()) {
     throw InputError(
         "no three neighbouring samples of the DEM have data: there is no terrain. "
@@ -114,11 +141,10 @@ SimplifiedTerrain simplify(const HeightSource& heights, const SimplifyOptions& o
   const double wanted_m = std::max(options.tolerance_m - kRounding_m, options.tolerance_m / 2);
   SimplifiedTerrain result;
   result.input_triangles = std::ssize(full.triangles);
-  result.mesh =
-      hierarchy::collapse_strictly(full, field_of(grid), placer, {}, {.tolerance_m = wanted_m})
-          .mesh;
+  const hierarchy::StrictOptions strict{.tolerance_m = wanted_m, .lines = line_tolerance(options)};
+  result.mesh = hierarchy::collapse_strictly(full, field_of(grid), placer, {}, strict).mesh;
   result.error = measure_over_grid(result.mesh, grid);
-  judge(result.error, std::ssize(full.vertices), options);
+  judge(result.error, sample_count(full), options);
   progress.advance(1);
   return result;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/grid_features.h"
 #include "core/height_source.h"
 #include "core/progress.h"
 #include "hierarchy/collapse/terrain_mesh.h"
@@ -12,6 +13,8 @@ struct SimplifyOptions {
   double tolerance_m = 1;
   /// Heights are written as whole multiples of 1 / height_steps_per_m metres.
   double height_steps_per_m = 1e6;
+  /// Lines that stay edges of the mesh, within tolerance_m of their place in plan.
+  GridFeatures features;
 };
 
 /// One mesh over a whole DEM, without tiles and levels.
