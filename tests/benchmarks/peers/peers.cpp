@@ -65,7 +65,31 @@ struct Contender {
 
   std::optional<Run> run(const Terrain& terrain, double tolerance_m) {
     if (peer.by_count) return search.fewest_within(tolerance_m);
-    const auto answer = peer.by_tolerance(terrain, tolerance_m);
+    return kept(terrain, tolerance_m);
+  }
+
+ private:
+  static bool holds(const std::optional<Run>& run, double tolerance_m) {
+    return run && run->verdict.max_m <= tolerance_m * (1 + 1e-9);
+  }
+
+  /// With the tolerance itself, or the largest smaller one with which the real one is kept.
+  std::optional<Run> kept(const Terrain& terrain, double tolerance_m) const {
+    std::optional<Run> best = with(terrain, tolerance_m);
+    if (!best || holds(best, tolerance_m)) return best;
+    best.reset();
+    double keeps_m = tolerance_m / 8, breaks_m = tolerance_m;
+    for (int halvings = 0; halvings < 8; ++halvings) {
+      const double middle_m = (keeps_m + breaks_m) / 2;
+      const std::optional<Run> run = with(terrain, middle_m);
+      (holds(run, tolerance_m) ? keeps_m : breaks_m) = middle_m;
+      if (holds(run, tolerance_m)) best = run;
+    }
+    return best;
+  }
+
+  std::optional<Run> with(const Terrain& terrain, double asked_m) const {
+    const auto answer = peer.by_tolerance(terrain, asked_m);
     if (!answer) return std::nullopt;
     return Run{answer->mesh.triangles.size(), judge(answer->mesh, terrain.grid), answer->cpu_s};
   }
