@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <queue>
 
 #include "hierarchy/volume/material_volume.h"
 
@@ -15,6 +16,21 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr int kTrianglesBeforeAnEarlyVerdict = 64;
 
 Mask bit(std::size_t i) { return Mask{1} << i; }
+
+double longest_edge(const TetraCorners& c) {
+  double squared = 0;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < i; ++j) squared = std::max(squared, (c[i] - c[j]).squaredNorm());
+  }
+  return std::sqrt(squared);
+}
+
+/// No point of a cell is nearer.
+double distance_to_box_of(const TetraCorners& c, const Vector3d& p) {
+  const Vector3d low = c[0].cwiseMin(c[1]).cwiseMin(c[2]).cwiseMin(c[3]);
+  const Vector3d high = c[0].cwiseMax(c[1]).cwiseMax(c[2]).cwiseMax(c[3]);
+  return (low - p).cwiseMax(p - high).cwiseMax(0).norm();
+}
 
 double nearest(const std::vector<ZeroSet>& sets, const Vector3d& p) {
   double distance = kUnbounded;
@@ -114,7 +130,7 @@ void MaterialVolume::evaluate(CellId cell) {
 }
 
 // The distance to a convex piece is convex, so over the part of a triangle in this cell it is
-// largest at a corner of that part. Where the piece in this cell is too far away, the pieces in the
+// largest at a corner of that part. Where the piece in this cell is too far away, those in the
 // cells around count as well: then the error holds until they change.
 double MaterialVolume::strict_error(CellId cell, InterfaceId interface, const Barycentric& shape) {
   const double tolerance = tolerances_.interfaces[index(interface)];
@@ -128,15 +144,14 @@ double MaterialVolume::strict_error(CellId cell, InterfaceId interface, const Ba
     for (int k = 0; k < part.size; ++k) {
       double distance = own.is_empty() ? kUnbounded : own.distance(part.points[k]);
       if (distance > tolerance || own.is_empty()) {
-        if (around.empty()) around = approximations_around(cell, interface);
         leans_on_neighbours_[index(cell)] = 1;
-        distance = std::min(distance, nearest(around, part.points[k]));
+        distance = std::min(distance, distance_around(cell, interface, part.points[k], around));
       }
       largest = std::max(largest, distance);
     }
-    if (std::isinf(largest)) return largest;
-    if (++looked_at >= kTrianglesBeforeAnEarlyVerdict && largest > tolerance) return largest;
+    if (++looked_at >= kTrianglesBeforeAnEarlyVerdict && largest > tolerance) break;
   }
+  if (std::isinf(largest)) return std::max(2 * tolerance, longest_edge(corners(cell)));
   return largest > tolerance ? largest : std::max(largest, reverse_error(cell, interface));
 }
 
@@ -170,30 +185,44 @@ double MaterialVolume::published_error(CellId cell, InterfaceId interface,
   return largest;
 }
 
-// Zero sets in this leaf and in all that share a vertex with it.
-std::vector<ZeroSet> MaterialVolume::approximations_around(CellId cell, InterfaceId interface) {
-  const auto& corners_here = mesh_.corners(cell);
-  std::vector<ZeroSet> found;
-  std::vector<CellId> open = {cell};
+// Distance of a place to the approximation as far as the tolerance, looked for in this leaf and
+// from neighbour to neighbour, the nearest first. A tip of the interface can miss the vertices of
+// all cells around it, at any size of cells; what it grows from is not far.
+double MaterialVolume::distance_around(CellId cell, InterfaceId interface, const Vector3d& p,
+                                       std::vector<ZeroSet>& known) {
+  const double tolerance = tolerances_.interfaces[index(interface)];
+  double best = nearest(known, p);
+  if (best <= tolerance) return best;
+  struct Open {
+    double distance;
+    CellId cell;
+    bool operator<(const Open& other) const {
+      return distance != other.distance ? distance > other.distance : cell > other.cell;
+    }
+  };
+  std::priority_queue<Open> open;
   ++search_;
   seen_[index(cell)] = search_;
-  while (!open.empty()) {
-    const CellId here = open.back();
-    open.pop_back();
+  open.push({0, cell});
+  while (!open.empty() && open.top().distance <= tolerance) {
+    const CellId here = open.top().cell;
+    open.pop();
     const Eigen::Vector4d d = distances(here, interface);
     if (d.minCoeff() <= 0 && d.maxCoeff() >= 0) {
-      found.push_back(zero_set(corners(here), {d[0], d[1], d[2], d[3]}));
+      const ZeroSet piece = zero_set(corners(here), {d[0], d[1], d[2], d[3]});
+      best = std::min(best, piece.distance(p));
+      if (best <= tolerance) {
+        known.push_back(piece);
+        return best;
+      }
     }
     for (const CellId next : mesh_.neighbours(here)) {
       if (next == kNoCell || seen_[index(next)] == search_) continue;
       seen_[index(next)] = search_;
-      const bool touches = std::ranges::any_of(mesh_.corners(next), [&](NodeId node) {
-        return std::ranges::find(corners_here, node) != corners_here.end();
-      });
-      if (touches) open.push_back(next);
+      open.push({distance_to_box_of(corners(next), p), next});
     }
   }
-  return found;
+  return best;
 }
 
 double MaterialVolume::deviation(CellId cell, FieldId field) const {
@@ -212,9 +241,12 @@ double MaterialVolume::deviation(CellId cell, FieldId field) const {
         Mask here = below & ~around, unsure = 0;
         for (std::size_t i = 0; i < interface_count(); ++i) {
           if ((around & bit(i)) == 0) continue;
-          const double d = model_.interfaces[i]->signed_distance(centre, options_.distance);
-          if (std::abs(d) <= radius) unsure |= bit(i);
-          if (d < 0) here |= bit(i);
+          const InterfaceSurface& surface = *model_.interfaces[i];
+          if (surface.nearest(centre).squared_distance <= radius * radius) {
+            unsure |= bit(i);  // the side is not worth finding out
+          } else if (surface.signed_distance(centre, options_.distance) < 0) {
+            here |= bit(i);
+          }
         }
         return (possible_materials(model_.materials, here, unsure) & bit(m)) != 0;
       };

@@ -183,7 +183,8 @@ void InterfaceSurface::check_self_intersections() const {
       if (other <= t) return;
       for (const std::uint32_t a : mesh_.triangles[t]) {
         for (const std::uint32_t b : mesh_.triangles[other]) {
-          if (a == b) return;  // neighbours touch; that they do not cross is not looked at
+          // neighbours touch; that they do not cross is not looked at
+          if (mesh_.points[a] == mesh_.points[b]) return;
         }
       }
       if (const auto at = crossing(mine, corners(other))) {

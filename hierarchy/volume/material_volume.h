@@ -62,7 +62,8 @@ struct Piece {
 /// Each vertex of the mesh holds a signed distance to each interface around it; in a cell the
 /// interface is the zero set of their linear interpolant. Each vertex holds, for each field and
 /// material around it, one value: the material's own, or a *ghost value* where it is another
-/// material's place: that of the far side at the interface's nearest vertex. So interfaces and
+/// material's place: that of the far side at the interface's nearest point (published: its nearest
+/// vertex; with DistanceRule::kNearestVertex). So interfaces and
 /// fields are continuous across cells.
 ///
 /// Guarantees after refine(): errors of all leaves are within the tolerances. With
@@ -104,7 +105,7 @@ class MaterialVolume {
   /// The material that a vertex lies in.
   MaterialId material(NodeId node) const;
 
-  /// Error of a cell. Exact up to the tolerance of the last call, beyond it a lower bound.
+  /// Error of a cell. A bound up to the tolerance of the last call; beyond it an estimate.
   double interface_error(CellId cell, InterfaceId interface) const {
     return errors_[index(cell) * error_count() + index(interface)];
   }
@@ -167,7 +168,8 @@ class MaterialVolume {
   double published_error(CellId cell, InterfaceId interface, const Barycentric& shape) const;
   double reverse_error(CellId cell, InterfaceId interface) const;
   double deviation(CellId cell, FieldId field) const;
-  std::vector<ZeroSet> approximations_around(CellId cell, InterfaceId interface);
+  double distance_around(CellId cell, InterfaceId interface, const Eigen::Vector3d& p,
+                         std::vector<ZeroSet>& known);
   InterfaceId interface_of(std::uint32_t triangle) const;
   std::array<Eigen::Vector3d, 3> triangle(std::uint32_t id) const;
   Mask vertex_sides(CellId leaf, Mask& open) const;

@@ -7,7 +7,7 @@ namespace terrane::hierarchy::volume {
 
 using Eigen::Vector3d;
 
-/// For each material the interface vertex that its ghost values come from.
+/// For each material the place on an interface that its ghost values come from.
 struct MaterialVolume::GhostPlaces {
   struct Place {
     Vector3d at = Vector3d::Zero();
@@ -41,7 +41,11 @@ MaterialVolume::GhostPlaces MaterialVolume::ghost_places(const Vector3d& p, Mask
     const Mask bit = Mask{1} << i;
     if ((interfaces & bit) == 0) continue;
     const InterfaceSurface& surface = *model_.interfaces[i];
-    const Vector3d at = surface.mesh().points[surface.nearest_vertex(p)];
+    // among large triangles the nearest vertex stays far away however small the cells become, and
+    // the value there with it
+    const Vector3d at = options_.distance == DistanceRule::kNearestVertex
+                            ? surface.mesh().points[surface.nearest_vertex(p)]
+                            : surface.nearest(p).point;
     const double distance = (at - p).squaredNorm();
     // on the far side of this interface, on its own side of the others
     Mask there = (below & bit) ^ bit;

@@ -137,7 +137,7 @@ TEST(MaterialVolume, InterfacesAndFieldsAreContinuousAcrossFaces) {
   EXPECT_GT(compared, 300);
 }
 
-TEST(MaterialVolume, GhostValuesAreTheFarSideAtTheNearestInterfaceVertex) {
+TEST(MaterialVolume, GhostValuesAreTheFarSideAtTheNearestPlaceOfTheInterface) {
   MaterialVolume volume(ball_model());
   volume.refine({{0.4}, {kAnything}});
   const InterfaceSurface& surface = *volume.model().interfaces[0];
@@ -147,7 +147,7 @@ TEST(MaterialVolume, GhostValuesAreTheFarSideAtTheNearestInterfaceVertex) {
     for (const NodeId node : volume.mesh().corners(leaf)) {
       const Vector3d p = volume.mesh().position(node);
       const MaterialId own = volume.material(node), far = own == kIn ? kOut : kIn;
-      const Vector3d there = surface.mesh().points[surface.nearest_vertex(p)];
+      const Vector3d there = surface.nearest(p).point;
       const Field& field = *volume.model().fields[0].field;
       EXPECT_DOUBLE_EQ(volume.value(node, kDensity, own), field.value(p, own));
       EXPECT_DOUBLE_EQ(volume.value(node, kDensity, far), field.value(there, far));
