@@ -16,6 +16,7 @@ void add_info_command(CLI::App& app, const CommonOptions& common);
 void add_levels_command(CLI::App& app, const CommonOptions& common);
 void add_verify_command(CLI::App& app, const CommonOptions& common);
 void add_serve_command(CLI::App& app, const CommonOptions& common);
+void add_volume_command(CLI::App& app, const CommonOptions& common);
 
 /// Thrown by a command whose answer is "no" (verify): exit status 1, nothing more to say.
 struct AnswerIsNo {};

@@ -27,6 +27,7 @@ void describe(CLI::App& app, terrane::cli::CommonOptions& common) {
   terrane::cli::add_levels_command(app, common);
   terrane::cli::add_verify_command(app, common);
   terrane::cli::add_serve_command(app, common);
+  terrane::cli::add_volume_command(app, common);
 }
 
 }  // namespace

@@ -16,10 +16,11 @@ MAY_INCLUDE = {
     "core": set(),
     "ingest": {"core"},
     "hierarchy": {"core"},
+    "model": {"core", "ingest", "hierarchy"},
     "tiler": {"core", "hierarchy"},
     "tiler/verify": {"core"},  # the judge shares nothing with the builder
     "viewer": {"core", "tiler"},
-    "cli": {"core", "ingest", "hierarchy", "tiler", "tiler/verify", "viewer"},
+    "cli": {"core", "ingest", "hierarchy", "model", "tiler", "tiler/verify", "viewer"},
 }
 SOURCES = ("*.h", "*.cpp")
 OTHER_CODE = ("*.ts", "*.mjs", "*.py", "*.cmake", "CMakeLists.txt")
