@@ -7,8 +7,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cli/build_settings.h"
 #include "cli/commands.h"
+#include "cli/dem_options.h"
 #include "cli/level_export.h"
 #include "cli/level_settings.h"
 #include "cli/terminal_progress.h"
