@@ -211,7 +211,7 @@ class BadLayers(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
         self.dem = self.folder / "dem.asc"
         rows = "\n".join(" ".join(str(c + r) for c in range(20)) for r in range(20))
-        self.dem.write_text("ncols 20\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 10\n" + rows)
+        self.dem.write_text("ncols 20\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 0.001\n" + rows)
 
     def layer(self, name, geometry, coordinates):
         file = self.folder / name
@@ -239,8 +239,6 @@ class BadLayers(unittest.TestCase):
         self.refuse(["--water", lines], "l.geojson", "polygons", "--lines")
 
     def test_a_layer_beside_the_dem_says_where_the_dem_is(self):
-        # 20 cells of 10 degrees would leave the Earth: give the DEM a place of its own
-        self.dem.write_text(self.dem.read_text().replace("cellsize 10", "cellsize 0.001"))
         far = self.layer("far.geojson", "LineString", [[100, 10], [101, 11]])
         self.refuse(["--lines", far], "far.geojson", "beside the DEM", "CRS")
 
@@ -254,7 +252,6 @@ class BadLayers(unittest.TestCase):
         for name in ("rivers", "roads"):
             subprocess.run(["ogr2ogr", "-f", "GPKG", "-update", "-append", several, lines, "-nln",
                             name], check=True, capture_output=True)
-        self.dem.write_text(self.dem.read_text().replace("cellsize 10", "cellsize 0.001"))
         self.refuse(["--lines", several], "2 layers", "rivers, roads")
         self.refuse(["--lines", f"{several}:rails"], "no layer 'rails'")
         status, _, said = terrane("--quiet", "simplify", self.dem, "--crs", "EPSG:4326", "--lines",
