@@ -62,7 +62,10 @@ class Build {
   }
 
   BuildResult run() {
-    if (folder_.finished_key() == data_set_.key) return {.was_up_to_date = true};
+    if (folder_.finished_key() == data_set_.key) {
+      folder_.end();  // again: the build that finished may have been killed while it tidied up
+      return {.was_up_to_date = true};
+    }
     folder_.begin(data_set_.key);
     for (int level = 0; level < pyramid_.level_count(); ++level) build_level(level);
     return finish();

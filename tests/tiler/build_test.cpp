@@ -46,6 +46,17 @@ TEST(Build, FindsAFinishedOutputUpToDateAndAChangedSettingNot) {
   EXPECT_TRUE(build_hills(folder.path(), {.tolerance_m = 3, .tile_cells = 16}).was_up_to_date);
 }
 
+TEST(Build, TidiesUpAfterOneThatWasKilledWhileItTidiedUp) {
+  const TemporaryFolder folder;
+  const BuildOptions options{.tolerance_m = 2, .tile_cells = 16};
+  build_hills(folder.path(), options);
+  const auto whole = bytes_below(folder.path());
+  std::filesystem::create_directories(folder.path() / ".work" / "0");
+  std::ofstream(folder.path() / ".work" / "0" / "0.tile") << "left over";
+  EXPECT_TRUE(build_hills(folder.path(), options).was_up_to_date);
+  EXPECT_EQ(bytes_below(folder.path()), whole);
+}
+
 TEST(Build, MendsAnOutputThatLostATile) {
   const TemporaryFolder folder;
   const BuildOptions options{.tolerance_m = 2, .tile_cells = 16};
