@@ -62,8 +62,8 @@ std::vector<tiler::SeamChain> leaf_seams(const Dem& dem, const tiler::TileId& ti
 void BM_BuildLeafSeam(benchmark::State& state) {
   const Dem dem;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(tiler::build_leaf_seam(dem.tiles, {kLeaf, true},
-                                                    static_cast<double>(state.range(0))));
+    benchmark::DoNotOptimize(
+        tiler::build_leaf_seam(dem.tiles, {kLeaf, true}, static_cast<double>(state.range(0))));
   }
   state.SetItemsProcessed(state.iterations());
   state.SetLabel("seams");
@@ -89,7 +89,8 @@ void BM_BuildParent(benchmark::State& state) {
   std::vector<tiler::TileMesh> children;
   std::int64_t triangles = 0;
   for (const tiler::TileId& child : dem.pyramid.children(kLeaf.parent())) {
-    children.push_back(tiler::build_leaf(dem.tiles, child, leaf_seams(dem, child), kTolerance_m).mesh);
+    children.push_back(
+        tiler::build_leaf(dem.tiles, child, leaf_seams(dem, child), kTolerance_m).mesh);
     triangles += static_cast<std::int64_t>(children.back().triangles.size());
   }
   for (auto _ : state) {
@@ -103,7 +104,8 @@ BENCHMARK(BM_BuildParent)->Unit(benchmark::kMillisecond);
 
 void BM_EncodeTile(benchmark::State& state) {
   const Dem dem;
-  const tiler::TileMesh mesh = tiler::build_leaf(dem.tiles, kLeaf, leaf_seams(dem, kLeaf), kTolerance_m).mesh;
+  const tiler::TileMesh mesh =
+      tiler::build_leaf(dem.tiles, kLeaf, leaf_seams(dem, kLeaf), kTolerance_m).mesh;
   std::size_t bytes = 0;
   for (auto _ : state) {
     bytes = tiler::encode_glb(kLeaf, mesh, mesh.points, dem.lattice.step_m(0), false).size();
