@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include "hierarchy/collapse/sample_field.h"
 
@@ -12,8 +14,11 @@ namespace {
 using hierarchy::FieldPoint;
 using hierarchy::FieldSample;
 
-// in cells, and as a share of a triangle
-constexpr double kOnEdge = 1e-7;
+constexpr double kOnEdge = 1e-7;  // as a share of a triangle
+
+// a vertex's place over the grid is rounded to whole units, so a triangle may lie beside its own
+// plan by that: who looks for its samples looks as far
+constexpr double kPlanRounding_cells = 1.0 / hierarchy::kUnitsPerCell;
 
 /// The samples of a patch, and where they stand in the world.
 class Patch {
@@ -75,7 +80,7 @@ class Measurement {
     const Eigen::Vector3d corner = a.world;
     const Eigen::Vector3d side_b = b.world - corner, side_c = c.world - corner;
     const double slack_cells =
-        kOnEdge + std::max({bend_cells(a, b), bend_cells(b, c), bend_cells(c, a)});
+        kPlanRounding_cells + std::max({bend_cells(a, b), bend_cells(b, c), bend_cells(c, a)});
     for_each_span(patch_.local(a.plan), patch_.local(b.plan), patch_.local(c.plan), shape_,
                   slack_cells, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
                     for (std::int64_t column = first; column <= last; ++column) {
@@ -92,21 +97,12 @@ class Measurement {
                   });
   }
 
-  /// Measures what no triangle covers, but lies within a step of the edge.
-  void add_rim(const WorldVertex& a, const WorldVertex& b) {
-    const FieldPoint from = patch_.local(a.plan), to = patch_.local(b.plan);
-    const double reach = step_m_ / frame_.spacing_m();
-    const auto first_column = std::ceil(std::min(from.column, to.column) - reach);
-    const auto last_column = std::floor(std::max(from.column, to.column) + reach);
-    const auto first_row = std::ceil(std::min(from.row, to.row) - reach);
-    const auto last_row = std::floor(std::max(from.row, to.row) + reach);
-    for (double row = std::max(0.0, first_row);
-         row <= std::min(last_row, static_cast<double>(shape_.rows - 1)); ++row) {
-      for (double column = std::max(0.0, first_column);
-           column <= std::min(last_column, static_cast<double>(shape_.columns - 1)); ++column) {
-        add_near_rim(static_cast<std::int64_t>(column), static_cast<std::int64_t>(row), a, b);
-      }
-    }
+  /// Measures what no triangle covers, but lies within a step of the rim: against its nearest
+  /// point.
+  void add_rim(const MeasuredMesh& mesh) {
+    std::map<std::size_t, NearRim> near;
+    for (const auto& [a, b] : mesh.rim) find_near(mesh.vertices[a], mesh.vertices[b], near);
+    for (const auto& [sample, nearest] : near) worst_m_[sample] = nearest.error_m;
   }
 
   void note(double noted_m, std::vector<bool>& is_noted) const {
@@ -131,6 +127,29 @@ class Measurement {
 
  private:
   static constexpr double kUnmeasured = -1;
+
+  /// The nearest point of the rim to a sample beside it.
+  struct NearRim {
+    double distance_m = std::numeric_limits<double>::infinity();
+    double error_m = 0;
+  };
+
+  void find_near(const WorldVertex& a, const WorldVertex& b,
+                 std::map<std::size_t, NearRim>& near) const {
+    const FieldPoint from = patch_.local(a.plan), to = patch_.local(b.plan);
+    const double reach = step_m_ / frame_.spacing_m();
+    const auto first_column = std::ceil(std::min(from.column, to.column) - reach);
+    const auto last_column = std::floor(std::max(from.column, to.column) + reach);
+    const auto first_row = std::ceil(std::min(from.row, to.row) - reach);
+    const auto last_row = std::floor(std::max(from.row, to.row) + reach);
+    for (double row = std::max(0.0, first_row);
+         row <= std::min(last_row, static_cast<double>(shape_.rows - 1)); ++row) {
+      for (double column = std::max(0.0, first_column);
+           column <= std::min(last_column, static_cast<double>(shape_.columns - 1)); ++column) {
+        find_near(static_cast<std::int64_t>(column), static_cast<std::int64_t>(row), a, b, near);
+      }
+    }
+  }
 
   /// Does the triangle lie wholly beside the patch, with room to spare for slack?
   bool is_beside(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c) const {
@@ -167,9 +186,11 @@ class Measurement {
     worst_m(column, row) = std::max(worst_m(column, row), std::abs(on_mesh_m - height_m));
   }
 
-  void add_near_rim(std::int64_t column, std::int64_t row, const WorldVertex& a,
-                    const WorldVertex& b) {
-    if (worst_m(column, row) != kUnmeasured) return;
+  void find_near(std::int64_t column, std::int64_t row, const WorldVertex& a, const WorldVertex& b,
+                 std::map<std::size_t, NearRim>& near) const {
+    const auto sample = static_cast<std::size_t>(row * shape_.columns + column);
+    const double height_m = patch_.height_m(column, row);
+    if (worst_m_[sample] != kUnmeasured || std::isnan(height_m)) return;
     const Plumb plumb = patch_.plumb(column, row);
     const auto flat = [&](const Eigen::Vector3d& v) -> Eigen::Vector3d {
       return v - v.dot(plumb.up) * plumb.up;
@@ -177,9 +198,12 @@ class Measurement {
     const Eigen::Vector3d from = a.world, along = b.world - from;
     const double length2 = std::max(flat(along).squaredNorm(), 1e-30);
     const double t = std::clamp(flat(plumb.base - from).dot(flat(along)) / length2, 0.0, 1.0);
-    const Eigen::Vector3d nearest = from + t * along;
-    if (flat(nearest - plumb.base).norm() > step_m_) return;
-    add(column, row, (nearest - plumb.base).dot(plumb.up));
+    const Eigen::Vector3d to_nearest = from + t * along - plumb.base;
+    const double distance_m = flat(to_nearest).norm();
+    if (distance_m > step_m_) return;
+    NearRim& nearest = near[sample];
+    if (distance_m >= nearest.distance_m) return;
+    nearest = {distance_m, std::abs(to_nearest.dot(plumb.up) - height_m)};
   }
 
   const TileFrame& frame_;
@@ -195,7 +219,7 @@ Measurement measured(const MeasuredMesh& mesh, const Patch& patch, const TileFra
   for (const auto& [a, b, c] : mesh.triangles) {
     measurement.add_triangle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
   }
-  for (const auto& [a, b] : mesh.rim) measurement.add_rim(mesh.vertices[a], mesh.vertices[b]);
+  measurement.add_rim(mesh);
   return measurement;
 }
 
