@@ -111,7 +111,8 @@ class ChainCollapse {
     }
     gather_rings(strip.triangles);
     if (!finer.places.empty()) {
-      guard_.emplace(finer.places, finer.triangles, vertices_, field, options.blend_tolerance_m);
+      guard_.emplace(finer.places, finer.triangles, vertices_, field, options.blend_tolerance_m,
+                     options.smallest_altitude_cells);
     }
     for (std::uint32_t v = 0; v < vertices_.size(); ++v) result_.target.push_back(v);
   }

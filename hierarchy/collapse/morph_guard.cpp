@@ -4,10 +4,13 @@
 #include <cmath>
 #include <numeric>
 
-#include "hierarchy/collapse/star_fit.h"
+#include "hierarchy/collapse/moving_triangle.h"
 
 namespace terrane::hierarchy {
 namespace {
+
+// of the altitude that triangles have at either end: they may become thinner in between
+constexpr double kShareOfAltitude = 0.25;
 
 struct PlanVector {
   double x, y;
@@ -19,9 +22,15 @@ PlanVector between(GridPoint a, GridPoint b) {
 
 double cross(PlanVector a, PlanVector b) { return a.x * b.y - a.y * b.x; }
 
-/// Does the triangle keep its orientation for all t in (0, 1) on its way from a to b?
-/// Twice its area is the quadratic q0 + q1 t + q2 t^2.
-bool keeps_orientation(const std::array<GridPoint, 3>& a, const std::array<GridPoint, 3>& b) {
+double longest(PlanVector u, PlanVector v) {
+  return std::sqrt(std::max({u.x * u.x + u.y * u.y, v.x * v.x + v.y * v.y,
+                             (u.x - v.x) * (u.x - v.x) + (u.y - v.y) * (u.y - v.y)}));
+}
+
+/// Does the triangle keep its orientation for all t in (0, 1) on its way from a to b, and with
+/// room to spare in between? Twice its area is the quadratic q0 + q1 t + q2 t^2.
+bool keeps_orientation(const std::array<GridPoint, 3>& a, const std::array<GridPoint, 3>& b,
+                       double least_altitude) {
   const PlanVector u0 = between(a[0], a[1]), v0 = between(a[0], a[2]);
   const PlanVector u1 = between(b[0], b[1]), v1 = between(b[0], b[2]);
   const PlanVector du{u1.x - u0.x, u1.y - u0.y}, dv{v1.x - v0.x, v1.y - v0.y};
@@ -30,26 +39,32 @@ bool keeps_orientation(const std::array<GridPoint, 3>& a, const std::array<GridP
   const double q2 = cross(du, dv);
   const double at_end = cross(u1, v1);
   if (q0 <= 0 || at_end < 0) return false;
+  const double least_area = least_altitude * std::max(longest(u0, v0), longest(u1, v1));
+  if (at_end == 0) {
+    // two corners meet: the area is (1 - t) (q0 - q2 t). If all three do, it is (1 - t)^2 q0
+    const bool all_meet = b[0] == b[1] && b[1] == b[2];
+    return all_meet || q0 - q2 > std::min(least_area, q0 / 2);
+  }
   const double lowest_at = q2 > 0 ? -q1 / (2 * q2) : 1;
-  return lowest_at >= 1 || lowest_at <= 0 || q0 + lowest_at * (q1 + lowest_at * q2) > 0;
+  if (lowest_at >= 1 || lowest_at <= 0) return true;
+  return q0 + lowest_at * (q1 + lowest_at * q2) > std::min({least_area, q0 / 2, at_end / 2});
 }
 
-FieldPoint blend(const Place& from, const Place& to, double t) {
-  const auto mix = [t](double p, double q) { return p + t * (q - p); };
-  return {mix(column_of(from.plan), column_of(to.plan)), mix(row_of(from.plan), row_of(to.plan)),
-          mix(from.height_m, to.height_m)};
+FieldPoint field_point(const Place& place) {
+  return {column_of(place.plan), row_of(place.plan), place.height_m};
 }
 
 }  // namespace
 
 MorphGuard::MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
                        const std::vector<TerrainVertex>& coarser, const SampleField& field,
-                       double tolerance_m)
+                       double tolerance_m, double smallest_altitude_cells)
     : finer_(std::move(finer)),
       triangles_(std::move(triangles)),
       coarser_(coarser),
       field_(field),
       tolerance_m_(tolerance_m),
+      least_altitude_(kShareOfAltitude * smallest_altitude_cells * kUnitsPerCell),
       target_(finer_.size()),
       next_member_(finer_.size()),
       first_incident_(finer_.size() + 1, 0),
@@ -80,22 +95,19 @@ void MorphGuard::begin_at(std::span<const std::uint32_t> target) {
 bool MorphGuard::is_sound(const Corners& triangle, std::span<const VertexId> core,
                           const Place& target) const {
   std::array<GridPoint, 3> from, to;
-  std::array<const Place*, 3> end;
+  std::array<FieldPoint, 3> begin, end;
   for (std::size_t k = 0; k < 3; ++k) {
     const VertexId coarse = target_[triangle[k]];
-    end[k] =
-        std::ranges::find(core, coarse) != core.end() ? &target : &coarser_[index(coarse)].place;
-    from[k] = finer_[triangle[k]].plan;
-    to[k] = end[k]->plan;
+    const Place& last =
+        std::ranges::find(core, coarse) != core.end() ? target : coarser_[index(coarse)].place;
+    const Place& first = finer_[triangle[k]];
+    from[k] = first.plan;
+    to[k] = last.plan;
+    begin[k] = field_point(first);
+    end[k] = field_point(last);
   }
-  if (!keeps_orientation(from, to)) return false;
-  for (const double t : {0.25, 0.5, 0.75}) {
-    if (!is_within(blend(finer_[triangle[0]], *end[0], t), blend(finer_[triangle[1]], *end[1], t),
-                   blend(finer_[triangle[2]], *end[2], t), field_, tolerance_m_)) {
-      return false;
-    }
-  }
-  return true;
+  return keeps_orientation(from, to, least_altitude_) &&
+         MovingTriangle(begin, end, field_.slack_cells).stays_within(field_, tolerance_m_);
 }
 
 bool MorphGuard::allows(std::span<const VertexId> core, const Place& target) {

@@ -13,16 +13,18 @@ namespace terrane::hierarchy {
 ///
 /// Every vertex of the finer level moves on a straight line to the vertex of the coarser mesh that
 /// it was collapsed into. The guard knows these targets, and refuses a collapse after which a
-/// triangle of the finer level would turn over at some t < 1, or leave the tolerance at t = 1/4,
-/// 1/2 or 3/4.
+/// triangle of the finer level would turn over at some t < 1, or leave the tolerance at any t
+/// (moving_triangle.h).
 class MorphGuard {
  public:
   /// \param finer      places of the finer level, one per vertex of the mesh to be collapsed.
   /// \param triangles  the finer level's.
   /// \param coarser    the mesh's vertices; read at every call, so it must outlive the guard.
+  /// \param smallest_altitude_cells  that the triangles of either level have in plan; in between,
+  ///                   it may be a quarter.
   MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
              const std::vector<TerrainVertex>& coarser, const SampleField& field,
-             double tolerance_m);
+             double tolerance_m, double smallest_altitude_cells = 0);
 
   /// Tells that fine vertices have gone elsewhere already, without a check.
   /// \param target  for each fine vertex: itself, or a vertex that stays; empty: none has gone.
@@ -44,7 +46,7 @@ class MorphGuard {
   std::vector<Corners> triangles_;
   const std::vector<TerrainVertex>& coarser_;
   const SampleField& field_;
-  double tolerance_m_;
+  double tolerance_m_, least_altitude_;
 
   std::vector<VertexId> target_;
   std::vector<std::uint32_t> next_member_;  // members of a coarse vertex: a ring through itself

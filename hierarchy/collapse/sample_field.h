@@ -1,9 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -59,17 +61,24 @@ struct FieldPoint {
   double height_m = 0;
 };
 
-/// Calls visit(row, first_column, last_column) for each row of samples under the triangle or nearer
-/// to it than \p slack_cells, in columns and rows. Stops and returns false as soon as visit does.
+/// A straight line between two points.
+using FieldSide = std::pair<const FieldPoint*, const FieldPoint*>;
+
+/// Calls visit(row, first_column, last_column) for each row of samples between the leftmost and the
+/// rightmost of some sides that go all around, or nearer to them than \p slack_cells, in columns
+/// and rows. Stops and returns false as soon as visit does.
 template <class Visit>
-bool for_each_span(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
-                   const GridShape& shape, double slack_cells, Visit&& visit) {
-  const double top = std::min({a.row, b.row, c.row}) - slack_cells;
-  const double bottom = std::max({a.row, b.row, c.row}) + slack_cells;
-  const auto first_row = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(top)));
-  const auto last_row =
-      std::min<std::int64_t>(shape.rows - 1, static_cast<std::int64_t>(std::floor(bottom)));
-  const std::pair<const FieldPoint*, const FieldPoint*> sides[3] = {{&a, &b}, {&b, &c}, {&c, &a}};
+bool for_each_span_between(std::span<const FieldSide> sides, const GridShape& shape,
+                           double slack_cells, Visit&& visit) {
+  double top = std::numeric_limits<double>::infinity(), bottom = -top;
+  for (const auto& [p, q] : sides) {
+    top = std::min({top, p->row, q->row});
+    bottom = std::max({bottom, p->row, q->row});
+  }
+  const auto first_row =
+      std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(top - slack_cells)));
+  const auto last_row = std::min<std::int64_t>(
+      shape.rows - 1, static_cast<std::int64_t>(std::floor(bottom + slack_cells)));
 
   for (std::int64_t row = first_row; row <= last_row; ++row) {
     const double above = static_cast<double>(row) - slack_cells;
@@ -98,6 +107,39 @@ bool for_each_span(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c
   return true;
 }
 
+/// The same for the samples under a triangle.
+template <class Visit>
+bool for_each_span(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
+                   const GridShape& shape, double slack_cells, Visit&& visit) {
+  const FieldSide sides[] = {{&a, &b}, {&b, &c}, {&c, &a}};
+  return for_each_span_between(sides, shape, slack_cells, visit);
+}
+
+/// A point counted in blocks of a reduced field, from the middle of the first.
+inline FieldPoint in_blocks(const FieldPoint& p, const SampleField& field) {
+  const auto side = static_cast<double>(field.block_cells);
+  return {(p.column - (side - 1) / 2) / side, (p.row - (side - 1) / 2) / side, 0};
+}
+
+/// Calls visit(number of the sample) for the samples of each block of a reduced field that may lie
+/// between sides; those are counted in blocks. Stops and returns false as soon as visit does.
+template <class Visit>
+bool for_each_kept_between(std::span<const FieldSide> sides, const SampleField& field,
+                           double slack_cells, Visit&& visit) {
+  const std::int64_t row_of_blocks = field.blocks().columns;
+  // half a block's diagonal takes in whatever lies in a block
+  const double reach = 0.75 + slack_cells / static_cast<double>(field.block_cells);
+  return for_each_span_between(
+      sides, field.blocks(), reach, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+        const auto begin = static_cast<std::size_t>(row * row_of_blocks + first);
+        const auto end = static_cast<std::size_t>(row * row_of_blocks + last + 1);
+        for (std::size_t k = field.first_kept[begin]; k < field.first_kept[end]; ++k) {
+          if (!visit(k)) return false;
+        }
+        return true;
+      });
+}
+
 /// Calls visit(number of the sample, sample) for each sample of the field under the triangle or
 /// nearer to it than \p slack_cells; numbers count from 0 over the whole field. Stops and returns
 /// false as soon as visit does. Samples without data are left out.
@@ -119,10 +161,6 @@ bool for_each_sample(const FieldPoint& a, const FieldPoint& b, const FieldPoint&
                            return true;
                          });
   }
-  const auto side = static_cast<double>(field.block_cells);
-  const auto in_blocks = [&](const FieldPoint& p) {
-    return FieldPoint{(p.column - (side - 1) / 2) / side, (p.row - (side - 1) / 2) / side, 0};
-  };
   const auto reach = [&](const FieldPoint& p, const FieldPoint& q) {
     return slack_cells * std::hypot(q.column - p.column, q.row - p.row);
   };
@@ -135,23 +173,53 @@ bool for_each_sample(const FieldPoint& a, const FieldPoint& b, const FieldPoint&
     return turn * beside(p, q, s.column, s.row) < nearest;
   };
   const double ab = -reach(a, b), bc = -reach(b, c), ca = -reach(c, a);
-  const std::int64_t row_of_blocks = field.blocks().columns;
-  // half a block's diagonal takes in whatever lies in a block
-  return for_each_span(
-      in_blocks(a), in_blocks(b), in_blocks(c), field.blocks(), 0.75 + slack_cells / side,
-      [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-        const auto begin = static_cast<std::size_t>(row * row_of_blocks + first);
-        const auto end = static_cast<std::size_t>(row * row_of_blocks + last + 1);
-        for (std::size_t k = field.first_kept[begin]; k < field.first_kept[end]; ++k) {
-          const FieldSample& sample = field.kept[k];
-          if (is_outside(a, b, sample, ab) || is_outside(b, c, sample, bc) ||
-              is_outside(c, a, sample, ca)) {
-            continue;
+  const FieldPoint corners[] = {in_blocks(a, field), in_blocks(b, field), in_blocks(c, field)};
+  const FieldSide sides[] = {
+      {&corners[0], &corners[1]}, {&corners[1], &corners[2]}, {&corners[2], &corners[0]}};
+  return for_each_kept_between(sides, field, slack_cells, [&](std::size_t k) {
+    const FieldSample& sample = field.kept[k];
+    return is_outside(a, b, sample, ab) || is_outside(b, c, sample, bc) ||
+           is_outside(c, a, sample, ca) || visit(k, sample);
+  });
+}
+
+/// Calls visit(sample) for each sample of the field in the convex hull of 3 to 6 points or nearer
+/// to it than \p slack_cells; if the field is reduced, for some beside it too. Stops and returns
+/// false as soon as visit does. Samples without data are left out.
+template <class Visit>
+bool for_each_sample_of_hull(std::span<const FieldPoint> points, const SampleField& field,
+                             double slack_cells, Visit&& visit) {
+  // of all pairs, the outermost are the hull's sides
+  std::array<FieldSide, 15> sides;
+  std::size_t count = 0;
+  const auto join_all = [&](std::span<const FieldPoint> ends) {
+    for (const FieldPoint& p : ends) {
+      for (const FieldPoint& q : ends) {
+        if (&p < &q) sides[count++] = {&p, &q};
+      }
+    }
+  };
+  if (!field.is_reduced()) {
+    join_all(points);
+    return for_each_span_between(
+        std::span<const FieldSide>(sides).first(count), {field.columns, field.rows}, slack_cells,
+        [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+          const double* heights = field.row(row);
+          for (std::int64_t column = first; column <= last; ++column) {
+            if (std::isnan(heights[column])) continue;
+            if (!visit(FieldSample{static_cast<float>(column), static_cast<float>(row),
+                                   heights[column]})) {
+              return false;
+            }
           }
-          if (!visit(k, sample)) return false;
-        }
-        return true;
-      });
+          return true;
+        });
+  }
+  std::array<FieldPoint, 6> block_points;
+  for (std::size_t k = 0; k < points.size(); ++k) block_points[k] = in_blocks(points[k], field);
+  join_all(std::span<const FieldPoint>(block_points).first(points.size()));
+  return for_each_kept_between(std::span<const FieldSide>(sides).first(count), field, slack_cells,
+                               [&](std::size_t k) { return visit(field.kept[k]); });
 }
 
 }  // namespace terrane::hierarchy

@@ -222,18 +222,4 @@ bool StarJudge::holds(const Star& star, const Place& centre, const CoveredSample
   return true;
 }
 
-bool is_within(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
-               const SampleField& field, double tolerance_m) {
-  const double bx = b.column - a.column, by = b.row - a.row, bz = b.height_m - a.height_m;
-  const double cx = c.column - a.column, cy = c.row - a.row, cz = c.height_m - a.height_m;
-  const double scale = 1 / (bx * cy - by * cx);
-  const double per_column = (bz * cy - by * cz) * scale, per_row = (bx * cz - bz * cx) * scale;
-  return for_each_sample(
-      a, b, c, field, field.slack_cells, [&](std::size_t, const FieldSample& sample) {
-        const double z =
-            a.height_m + (sample.column - a.column) * per_column + (sample.row - a.row) * per_row;
-        return std::abs(z - sample.height_m) <= tolerance_m;
-      });
-}
-
 }  // namespace terrane::hierarchy

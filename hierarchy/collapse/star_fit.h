@@ -48,8 +48,4 @@ class StarJudge {
   std::vector<std::uint32_t> sectors_;
 };
 
-/// Is the triangle within the tolerance of every sample under it?
-bool is_within(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
-               const SampleField& field, double tolerance_m);
-
 }  // namespace terrane::hierarchy

@@ -53,7 +53,7 @@ class StrictCollapse {
     if (!input.lines.empty()) lines_.emplace(input.lines, vertices_.size(), options.lines);
     if (!finer.places.empty()) {
       guard_.emplace(split_like(mesh_, finer.places), finer.triangles, vertices_, field,
-                     options.tolerance_m);
+                     options.tolerance_m, options.smallest_altitude_cells);
       guard_->begin_at(finer.target);
     } else {
       parent_.resize(vertices_.size());

@@ -14,7 +14,7 @@ class BlockJudge {
     findings.rim = rim_of(block);
     const int levels = static_cast<int>(output_.levels.size());
     for (int level = 0; level < levels; ++level) {
-      const int times = level + 1 == levels ? 1 : static_cast<int>(kTimes.size());
+      const int times = level + 1 == levels ? 1 : static_cast<int>(kTimeCount);
       for (int time = 0; time < times; ++time) judge_slot(block, {level, time}, findings);
     }
     return findings;
@@ -56,7 +56,7 @@ class BlockJudge {
     const double near_m = slot.time == 0
                               ? output_.levels[static_cast<std::size_t>(slot.level)].plan_step_m()
                               : output_.reach_m(slot.level);
-    return judge(block, meshes, kTimes[static_cast<std::size_t>(slot.time)], near_m);
+    return judge(block, meshes, time_at(static_cast<std::size_t>(slot.time)), near_m);
   }
 
   void judge_slot(const SampleBlock& block, const Slot& slot, BlockFindings& findings) const {

@@ -60,8 +60,31 @@ Nearest nearest_on_edges(const Sample& sample, const Corners& corners) {
 /// One triangle at one t, with the samples that it may cover.
 struct Candidate {
   Corners corners;
+  std::array<GridPosition, 3> at = {};
+  double margin = 0;
   double first_column, last_column, first_row, last_row;
 
+  /// Columns in which samples of a row may be under it, or within the margin.
+  std::pair<double, double> columns_near(double row) const {
+    double low = last_column, high = first_column;
+    for (std::size_t n = 0; n < 3; ++n) {
+      const GridPosition &a = at[n], &b = at[(n + 1) % 3];
+      const double begin = std::max(std::min(a.row, b.row), row - margin);
+      const double end = std::min(std::max(a.row, b.row), row + margin);
+      if (begin > end) continue;
+      for (const double y : {begin, end}) {
+        const double column =
+            a.row == b.row ? a.column
+                           : a.column + (y - a.row) / (b.row - a.row) * (b.column - a.column);
+        low = std::min(low, column);
+        high = std::max(high, column);
+      }
+      if (a.row != b.row) continue;
+      low = std::min(low, b.column);
+      high = std::max(high, b.column);
+    }
+    return {low - margin, high + margin};
+  }
   bool may_cover(double column, double row) const {
     return column >= first_column && column <= last_column && row >= first_row && row <= last_row;
   }
@@ -69,17 +92,18 @@ struct Candidate {
 
 Candidate candidate(const PlacedMesh& mesh, std::uint32_t triangle, double t) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  Candidate candidate{{}, kFar, -kFar, kFar, -kFar};
+  Candidate candidate{{}, {}, mesh.margin_cells(triangle), kFar, -kFar, kFar, -kFar};
   for (std::size_t n = 0; n < 3; ++n) {
     const std::uint32_t vertex = mesh.mesh().triangles[triangle][n];
     const GridPosition at = mesh.grid_position(vertex, t);
     candidate.corners[n] = mesh.corner(vertex, t);
+    candidate.at[n] = at;
     candidate.first_column = std::min(candidate.first_column, at.column);
     candidate.last_column = std::max(candidate.last_column, at.column);
     candidate.first_row = std::min(candidate.first_row, at.row);
     candidate.last_row = std::max(candidate.last_row, at.row);
   }
-  const double margin = mesh.margin_cells(triangle);
+  const double margin = candidate.margin;
   candidate.first_column -= margin;
   candidate.last_column += margin;
   candidate.first_row -= margin;
@@ -100,11 +124,11 @@ std::pair<std::int64_t, std::int64_t> clip(double low, double high, std::int64_t
 void hit_samples(const SampleBlock& block, const Candidate& candidate,
                  std::vector<Verdict>& verdicts) {
   const Window& window = block.window;
-  const auto [first_column, last_column] =
-      clip(candidate.first_column, candidate.last_column, window.column, window.columns);
   const auto [first_row, last_row] =
       clip(candidate.first_row, candidate.last_row, window.row, window.rows);
   for (std::int64_t row = first_row; row <= last_row; ++row) {
+    const auto [low, high] = candidate.columns_near(static_cast<double>(row));
+    const auto [first_column, last_column] = clip(low, high, window.column, window.columns);
     for (std::int64_t column = first_column; column <= last_column; ++column) {
       const Sample& sample = block.at(column, row);
       if (!sample.is_terrain) continue;

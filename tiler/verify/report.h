@@ -7,6 +7,11 @@
 
 namespace terrane::verify {
 
+/// The moments of a morph at which samples and triangles are judged: those that a builder is likely
+/// to check, and others. The end, t = 1, is compared with the next level itself.
+inline constexpr std::array<double, 12> kMorphTimes = {0.03, 0.1, 0.2, 0.25, 0.3, 0.4,
+                                                       0.5,  0.6, 0.7, 0.75, 0.9, 0.97};
+
 /// A level half-way into the next one: every vertex at POSITION + t * _MORPH.
 struct MorphReport {
   double t = 0;
@@ -44,9 +49,8 @@ struct LevelReport {
   std::int64_t parent_triangles_missing = 0;
   std::int64_t parent_triangles_extra = 0;
   std::int64_t root_morphs = 0;  ///< vertices of the root with a displacement
-  bool has_morph = false;        ///< false for the root
-  std::array<MorphReport, 3> morph = {MorphReport{.t = 0.25}, MorphReport{.t = 0.5},
-                                      MorphReport{.t = 0.75}};
+  bool has_morph() const { return !morph.empty(); }
+  std::vector<MorphReport> morph;  ///< one for each of kMorphTimes; empty for the root
 
   /// Tiles whose box lacks some of their vertices (t = 0 or 1), and children that stick out of it.
   std::int64_t boxes_violated = 0;

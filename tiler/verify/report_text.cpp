@@ -35,16 +35,30 @@ void print_seams(const VerifyReport& report, Buffer out) {
   }
 }
 
-void print_morphs(const VerifyReport& report, Buffer out) {
-  fmt::format_to(out, "\n{:>5} {:>5} {:>11} {:>9} {:>9} {:>7}\n", "level", "t", "max_error_m",
-                 "over", "uncovered", "folded");
-  for (const LevelReport& level : report.levels) {
-    if (!level.has_morph) continue;
-    for (const MorphReport& morph : level.morph) {
-      fmt::format_to(out, "{:>5} {:>5} {:>11.5g} {:>9} {:>9} {:>7}\n", level.level, morph.t,
-                     morph.max_error_m, morph.samples_over_tolerance, morph.uncovered_samples,
-                     morph.folded_triangles);
+/// All moments of a level's morph as one: the worst error and when, the sums of the rest.
+MorphReport worst_of(const std::vector<MorphReport>& moments) {
+  MorphReport worst;
+  for (const MorphReport& moment : moments) {
+    if (moment.max_error_m > worst.max_error_m) {
+      worst.t = moment.t;
+      worst.max_error_m = moment.max_error_m;
     }
+    worst.samples_over_tolerance += moment.samples_over_tolerance;
+    worst.uncovered_samples += moment.uncovered_samples;
+    worst.folded_triangles += moment.folded_triangles;
+  }
+  return worst;
+}
+
+void print_morphs(const VerifyReport& report, Buffer out) {
+  fmt::format_to(out, "\n{:>5} {:>7} {:>11} {:>6} {:>9} {:>9} {:>7}\n", "level", "moments",
+                 "max_error_m", "at_t", "over", "uncovered", "folded");
+  for (const LevelReport& level : report.levels) {
+    if (!level.has_morph()) continue;
+    const MorphReport worst = worst_of(level.morph);
+    fmt::format_to(out, "{:>5} {:>7} {:>11.5g} {:>6} {:>9} {:>9} {:>7}\n", level.level,
+                   level.morph.size(), worst.max_error_m, worst.t, worst.samples_over_tolerance,
+                   worst.uncovered_samples, worst.folded_triangles);
   }
 }
 
@@ -94,7 +108,6 @@ Json to_json(const LevelReport& level) {
                  {"tiles_unexpected", level.tiles_unexpected},
                  {"facts_misstated", level.facts_misstated},
                  {"morph", Json::array()}};
-  if (!level.has_morph) return object;
   for (const MorphReport& morph : level.morph) object["morph"].push_back(to_json(morph));
   return object;
 }

@@ -54,7 +54,8 @@ SampleTally::SampleTally(const Tiling& tiling, std::vector<LevelEntry> levels)
     : tiling_(tiling), levels_(std::move(levels)) {
   for (int level = 0; level < static_cast<int>(levels_.size()); ++level) {
     const bool is_root = level + 1 == static_cast<int>(levels_.size());
-    for (int time = 0; time < (is_root ? 1 : 4); ++time) tallies_[{level, time}] = {};
+    for (int time = 0; time < (is_root ? 1 : static_cast<int>(kTimeCount)); ++time)
+      tallies_[{level, time}] = {};
   }
 }
 
@@ -111,7 +112,7 @@ std::vector<std::string> SampleTally::problems() const {
   for (const auto& [key, tally] : failing_) {
     const auto& [tile, time] = key;
     const std::string when =
-        time == 0 ? "" : fmt::format(" at t = {}", kTimes[static_cast<std::size_t>(time)]);
+        time == 0 ? "" : fmt::format(" at t = {}", time_at(static_cast<std::size_t>(time)));
     if (tally.over_tolerance > 0) {
       lines.push_back(fmt::format(
           "{}{}: {} samples over the tolerance of {} m, the worst {:.6g} m off at (column {}, row "

@@ -8,16 +8,18 @@
 #include <vector>
 
 #include "tiler/verify/coverage.h"
+#include "tiler/verify/report.h"
 
 namespace terrane::verify {
 
-/// The morph times at which samples are judged.
-inline constexpr std::array<double, 4> kTimes = {0, 0.25, 0.5, 0.75};
+/// The moments at which samples are judged: at rest, and kMorphTimes.
+inline constexpr std::size_t kTimeCount = 1 + kMorphTimes.size();
+constexpr double time_at(std::size_t index) { return index == 0 ? 0 : kMorphTimes[index - 1]; }
 
 /// One level at one time.
 struct Slot {
   int level = 0;
-  int time = 0;  ///< index into kTimes
+  int time = 0;  ///< for time_at()
 
   auto operator<=>(const Slot&) const = default;
 };

@@ -40,15 +40,15 @@ std::vector<LatticeTriangle> triangles_at_next_level(const TileMesh& mesh) {
 
 void count_folds(TileFindings& findings, bool is_root) {
   const PlacedMesh& placed = *findings.placed;
-  for (std::size_t time = 0; time < (is_root ? 1 : kTimes.size()); ++time) {
-    findings.folded[time] = placed.count_folded(kTimes[time]);
+  for (std::size_t time = 0; time < (is_root ? 1 : kTimeCount); ++time) {
+    findings.folded[time] = placed.count_folded(time_at(time));
     if (findings.folded[time] == 0) continue;
-    const std::int64_t first = placed.first_folded(kTimes[time]);
+    const std::int64_t first = placed.first_folded(time_at(time));
     const auto corner = placed.mesh().triangles[static_cast<std::size_t>(first)][0];
-    const GridPosition at = placed.grid_position(corner, kTimes[time]);
+    const GridPosition at = placed.grid_position(corner, time_at(time));
     findings.problems.push_back(fmt::format(
         "{}: {} triangles folded at t = {}, the first at (column {:.2f}, row {:.2f})",
-        to_string(findings.key), findings.folded[time], kTimes[time], at.column, at.row));
+        to_string(findings.key), findings.folded[time], time_at(time), at.column, at.row));
   }
 }
 

@@ -17,8 +17,8 @@ using LatticeTriangle = std::array<Lattice, 3>;
 /// What one tile's files say by themselves, kept until its neighbours and parent are compared.
 struct TileFindings {
   TileKey key;
-  std::unique_ptr<PlacedMesh> placed;       ///< null if tileset.json does not list the tile
-  std::array<std::int64_t, 4> folded = {};  ///< by index of kTimes
+  std::unique_ptr<PlacedMesh> placed;  ///< null if tileset.json does not list the tile
+  std::array<std::int64_t, kTimeCount> folded = {};  ///< see time_at()
   std::int64_t torn_edges = 0;
   std::int64_t vertices_with_morph = 0;
   std::int64_t vertices_outside_box = 0;

@@ -62,9 +62,10 @@ class Verification {
         progress_(progress),
         samples_(output.tiling, output.levels) {
     for (std::size_t level = 0; level < output.levels.size(); ++level) {
-      report_.levels.push_back({.level = static_cast<int>(level),
-                                .tolerance_m = output.levels[level].tolerance_m,
-                                .has_morph = level + 1 < output.levels.size()});
+      report_.levels.push_back(
+          {.level = static_cast<int>(level), .tolerance_m = output.levels[level].tolerance_m});
+      if (level + 1 == output.levels.size()) continue;
+      for (const double t : kMorphTimes) report_.levels.back().morph.push_back({.t = t});
     }
   }
 
@@ -179,7 +180,7 @@ class Verification {
   }
 
   void check_root_morph(const TileFindings& tile) {
-    if (level(tile.key).has_morph || tile.vertices_with_morph == 0) return;
+    if (level(tile.key).has_morph() || tile.vertices_with_morph == 0) return;
     level(tile.key).root_morphs += tile.vertices_with_morph;
     problems_.push_back(fmt::format("{}: {} vertices of the root have a _MORPH",
                                     to_string(tile.key), tile.vertices_with_morph));
@@ -287,9 +288,9 @@ class Verification {
       of_level.samples_over_tolerance = tally.over_tolerance;
       const auto covered = static_cast<double>(tally.samples - tally.uncovered);
       of_level.rms_error_m = covered > 0 ? std::sqrt(tally.square_sum_m2 / covered) : 0;
-      for (int time = 1; of_level.has_morph && time < static_cast<int>(kTimes.size()); ++time) {
-        const Tally& morphing = samples_.of({of_level.level, time});
-        MorphReport& morph = of_level.morph[static_cast<std::size_t>(time) - 1];
+      for (std::size_t n = 0; n < of_level.morph.size(); ++n) {
+        const Tally& morphing = samples_.of({of_level.level, static_cast<int>(n) + 1});
+        MorphReport& morph = of_level.morph[n];
         morph.max_error_m = morphing.max_error_m;
         morph.samples_over_tolerance = morphing.over_tolerance;
         morph.uncovered_samples = morphing.uncovered;

@@ -43,10 +43,17 @@ TEST_F(FlatGuard, RefusesToTurnATriangleOver) {
   EXPECT_FALSE(guard().allows(std::array{VertexId{12}}, cell(4, 1, 0)));
 }
 
-TEST_F(FlatGuard, RefusesToLeaveTheToleranceHalfWay) {
-  // 1.9 m up: within 1 m at t = 1/2 only just, and over it at 3/4
-  EXPECT_FALSE(guard().allows(std::array{VertexId{12}}, cell(2, 2, 1.9)));
-  EXPECT_TRUE(guard().allows(std::array{VertexId{12}}, cell(2, 2, 1.3)));
+TEST_F(FlatGuard, RefusesToLeaveTheTolerance) {
+  EXPECT_FALSE(guard().allows(std::array{VertexId{12}}, cell(2, 2, 1.01)));
+  EXPECT_TRUE(guard().allows(std::array{VertexId{12}}, cell(2, 2, 0.99)));
+}
+
+TEST_F(FlatGuard, RefusesToLeaveTheToleranceForAMoment) {
+  // a peak of 1.01 m goes from between two samples over one, at t = 0.4, to between two
+  finer_[12] = cell(1.6, 2, 1.01);
+  EXPECT_FALSE(guard().allows(std::array{VertexId{12}}, cell(2.6, 2, 1.01)));
+  finer_[12] = cell(1.6, 2, 0.99);
+  EXPECT_TRUE(guard().allows(std::array{VertexId{12}}, cell(2.6, 2, 0.99)));
 }
 
 TEST_F(FlatGuard, MembersFollowTheVertexTheyWereJoinedTo) {

@@ -184,13 +184,5 @@ TEST(StarJudge, AgreesWithEverySectorTriedOnRandomStars) {
   EXPECT_GT(feasible, 50);
 }
 
-TEST(IsWithin, SeesASampleOnTheEdgeOfTheTriangle) {
-  const SampleField field =
-      field_of(grid_of(5, 5, [](auto c, auto r) { return c == 2 && r == 0 ? 3 : 0; }));
-  const FieldPoint a{0, 0, 0}, b{0, 4, 0}, c{4, 0, 0};
-  EXPECT_FALSE(is_within(a, b, c, field, 2.9));
-  EXPECT_TRUE(is_within(a, b, c, field, 3));
-}
-
 }  // namespace
 }  // namespace terrane::hierarchy

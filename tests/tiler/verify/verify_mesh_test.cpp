@@ -13,6 +13,11 @@ using ::testing::HasSubstr;
 
 constexpr GridShape kShape{17, 17};  // 4 x 4 leaf tiles of 4 cells, three levels
 
+// places of t = 1/4, 1/2 and 3/4 in kMorphTimes
+constexpr std::size_t kQuarter = 3, kHalf = 6, kThreeQuarters = 9;
+static_assert(kMorphTimes[kQuarter] == 0.25 && kMorphTimes[kHalf] == 0.5 &&
+              kMorphTimes[kThreeQuarters] == 0.75);
+
 /// A slope: every triangle of any size lies in it exactly.
 FakeDem slope() {
   return {kShape, [](auto column, auto row) { return static_cast<float>(4 * column + 8 * row); }};
@@ -39,7 +44,7 @@ TEST_F(SlopeOutput, HoldsWhenEveryTriangleLiesInTheSlope) {
   for (const LevelReport& level : report.levels) {
     EXPECT_EQ(level.samples, 17 * 17);
     EXPECT_EQ(level.max_error_m, 0);
-    for (const MorphReport& morph : level.morph) EXPECT_EQ(morph.max_error_m, 0);
+    for (const MorphReport& morph : level.morph) EXPECT_NEAR(morph.max_error_m, 0, 1e-9);
   }
 }
 
@@ -90,7 +95,7 @@ TEST(VerifySamples, AreOverTheToleranceByTheSmallestAmount) {
   EXPECT_EQ(report.levels[2].samples_over_tolerance, 8 * 17);
   EXPECT_EQ(report.levels[1].samples_over_tolerance, 0);
   // level 1 ends as level 2: its morph is held to that tolerance
-  EXPECT_EQ(report.levels[1].morph[0].samples_over_tolerance, 8 * 17);
+  EXPECT_EQ(report.levels[1].morph[kQuarter].samples_over_tolerance, 8 * 17);
 }
 
 TEST_F(SlopeOutput, ALiftedVertexIsNamedWithItsSample) {
@@ -110,11 +115,11 @@ TEST_F(SlopeOutput, ALiftedVertexIsFoundInTheMorphToo) {
   tile.morph[vertex][2] += 16;  // 8 m higher at t = 1, on the lattice of 1 m
   const VerifyReport report = verdict();
   EXPECT_EQ(report.levels[1].max_error_m, 0);
-  EXPECT_DOUBLE_EQ(report.levels[1].morph[0].max_error_m, 2);
-  EXPECT_DOUBLE_EQ(report.levels[1].morph[1].max_error_m, 4);
-  EXPECT_DOUBLE_EQ(report.levels[1].morph[2].max_error_m, 6);
-  EXPECT_EQ(report.levels[1].morph[1].samples_over_tolerance, 0);  // 4 m is allowed
-  EXPECT_GT(report.levels[1].morph[2].samples_over_tolerance, 0);
+  EXPECT_DOUBLE_EQ(report.levels[1].morph[kQuarter].max_error_m, 2);
+  EXPECT_DOUBLE_EQ(report.levels[1].morph[kHalf].max_error_m, 4);
+  EXPECT_DOUBLE_EQ(report.levels[1].morph[kThreeQuarters].max_error_m, 6);
+  EXPECT_EQ(report.levels[1].morph[kHalf].samples_over_tolerance, 0);  // 4 m is allowed
+  EXPECT_GT(report.levels[1].morph[kThreeQuarters].samples_over_tolerance, 0);
 }
 
 TEST_F(SlopeOutput, ASampleOnASeamIsCountedOnceWhenBothTilesMissIt) {
@@ -196,7 +201,7 @@ TEST_F(SlopeOutput, ATriangleTurnedOverIsFolded) {
   std::swap(tile.triangles[3][0], tile.triangles[3][1]);
   const VerifyReport report = verdict();
   EXPECT_EQ(report.levels[1].folded_triangles, 1);
-  EXPECT_EQ(report.levels[1].morph[1].folded_triangles, 1);
+  EXPECT_EQ(report.levels[1].morph[kHalf].folded_triangles, 1);
   EXPECT_THAT(report.problems, Contains(HasSubstr("tile 1/1/0: 1 triangles folded at t = 0,")));
 }
 
@@ -212,7 +217,7 @@ TEST_F(SlopeOutput, AVertexThatOvertakesItsNeighbourOnItsWayIsAFold) {
   tile.morph[tile.vertex_at(6, 2)][0] -= 64;
   const VerifyReport report = verdict();
   EXPECT_EQ(report.levels[1].folded_triangles, 0);
-  EXPECT_GT(report.levels[1].morph[1].folded_triangles, 0);
+  EXPECT_GT(report.levels[1].morph[kHalf].folded_triangles, 0);
 }
 
 TEST_F(SlopeOutput, ASpoiledMorphDoesNotBecomeTheParent) {

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+
+#include "hierarchy/collapse/sample_field.h"
+
+namespace terrane::hierarchy {
+
+/// A triangle whose corners move on straight lines, all in the same time t = 0 ... 1.
+///
+/// Under it, a sample sees a height that is a cubic over a quadratic in t: so whether it is ever
+/// too far off is decided for all t at once, by the signs of Bernstein coefficients, and not at
+/// some values of t.
+class MovingTriangle {
+ public:
+  /// \param from, to  the corners at t = 0 and t = 1, counter-clockwise with rows downward; at
+  ///                  t = 0 the triangle has an area in plan.
+  /// \param slack_cells  samples this near to it at t = 0 count as under it.
+  MovingTriangle(const std::array<FieldPoint, 3>& from, const std::array<FieldPoint, 3>& to,
+                 double slack_cells);
+
+  /// Is it within the tolerance of the sample at all t at which the sample is under it?
+  ///
+  /// What lasts less than 1 / 4096 of the time, as a sample leaves the triangle or comes under it,
+  /// is left to the triangle on the other side of the edge.
+  bool stays_within(const FieldSample& sample, double tolerance_m) const;
+
+  /// The same for all samples of a field.
+  bool stays_within(const SampleField& field, double tolerance_m) const;
+
+ private:
+  /// Twice the area between the sample and an edge, at times that do not matter here: affine.
+  struct Affine {
+    double constant, per_column, per_row;
+    double at(double column, double row) const {
+      return constant + column * per_column + row * per_row;
+    }
+  };
+
+  std::array<FieldPoint, 3> from_, to_;
+  /// Bernstein coefficients of the area opposite corner k over a sample, see from_[0]
+  std::array<std::array<Affine, 3>, 3> areas_;
+  std::array<double, 3> whole_;  // those of the whole area
+  double slack_;                 // as a share of the whole area
+};
+
+}  // namespace terrane::hierarchy

@@ -1,0 +1,121 @@
+#include "hierarchy/collapse/moving_triangle.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace terrane::hierarchy {
+namespace {
+
+using Triangle = std::array<FieldPoint, 3>;
+
+FieldPoint blend(const FieldPoint& a, const FieldPoint& b, double t) {
+  return {a.column + t * (b.column - a.column), a.row + t * (b.row - a.row),
+          a.height_m + t * (b.height_m - a.height_m)};
+}
+
+double doubled_area(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c) {
+  // rows run downward, counter-clockwise is positive
+  return (c.column - a.column) * (b.row - a.row) - (b.column - a.column) * (c.row - a.row);
+}
+
+Triangle blend(const Triangle& from, const Triangle& to, double t) {
+  return {blend(from[0], to[0], t), blend(from[1], to[1], t), blend(from[2], to[2], t)};
+}
+
+/// Does it keep an area at all times?
+bool stays_up(const Triangle& from, const Triangle& to) {
+  for (int n = 0; n <= 100; ++n) {
+    const Triangle at = blend(from, to, n / 100.0);
+    if (doubled_area(at[0], at[1], at[2]) < 0.1) return false;
+  }
+  return true;
+}
+
+/// Largest distance at many moments at which the sample is under the triangle.
+double sampled_error_m(const Triangle& from, const Triangle& to, const FieldSample& sample) {
+  constexpr int kMoments = 4000;
+  const FieldPoint s{sample.column, sample.row, 0};
+  double worst_m = 0;
+  for (int n = 0; n <= kMoments; ++n) {
+    const Triangle at = blend(from, to, double(n) / kMoments);
+    const double whole = doubled_area(at[0], at[1], at[2]);
+    if (!(whole > 1e-6)) continue;
+    const double a = doubled_area(at[1], at[2], s) / whole;
+    const double b = doubled_area(at[2], at[0], s) / whole;
+    const double c = doubled_area(at[0], at[1], s) / whole;
+    if (a < 0 || b < 0 || c < 0) continue;
+    worst_m = std::max(worst_m, std::abs(a * at[0].height_m + b * at[1].height_m +
+                                         c * at[2].height_m - sample.height_m));
+  }
+  return worst_m;
+}
+
+class RandomTriangles {
+ public:
+  Triangle next() {
+    for (;;) {
+      const Triangle t{point(), point(), point()};
+      if (doubled_area(t[0], t[1], t[2]) > 0.5) return t;
+    }
+  }
+  FieldPoint point() { return {uniform_(random_), uniform_(random_), 4 * uniform_(random_)}; }
+
+ private:
+  std::mt19937 random_{7};
+  std::uniform_real_distribution<double> uniform_{0, 4};
+};
+
+TEST(MovingTriangle, AgreesWithALookAtManyMoments) {
+  RandomTriangles random;
+  int sound = 0, unsound = 0;
+  for (int n = 0; n < 3000; ++n) {
+    Triangle from = random.next(), to = random.next();
+    if (n % 3 > 0) to[2] = from[2];
+    if (n % 3 > 1) to[1] = from[1];
+    if (!stays_up(from, to)) continue;
+    const FieldPoint s = random.point();
+    const FieldSample sample{float(s.column), float(s.row), s.height_m};
+    const double worst_m = sampled_error_m(from, to, sample);
+    const MovingTriangle moving(from, to, 0);
+    EXPECT_TRUE(moving.stays_within(sample, worst_m * 1.001 + 0.01)) << n;
+    ++sound;
+    // what lasts long is found; a moment at an edge is left to the neighbour
+    if (worst_m < 0.5 || moving.stays_within(sample, worst_m * 0.9)) continue;
+    ++unsound;
+  }
+  EXPECT_GT(sound, 1000);
+  EXPECT_GT(unsound, 200);
+}
+
+TEST(MovingTriangle, FindsAPeakThatPassesBetweenQuarters) {
+  // the peak at column 1.6 to 2.6 is nearest to column 2 at t = 0.4
+  const Triangle from{FieldPoint{1.6, 2, 1.2}, {1, 3, 0}, {3, 2.9, 0}};
+  const Triangle to{FieldPoint{2.6, 2, 1.2}, {1, 3, 0}, {3, 2.9, 0}};
+  const FieldSample sample{2, 2.125F, 0};
+  EXPECT_FALSE(MovingTriangle(from, to, 1e-7).stays_within(sample, 1));
+  EXPECT_TRUE(MovingTriangle(from, to, 1e-7).stays_within(sample, 1.06));
+}
+
+TEST(MovingTriangle, ThatBecomesALineIsJudgedOnTheWay) {
+  const Triangle from{FieldPoint{0, 4, 0}, {4, 4, 0}, {2, 0, 0}};
+  const Triangle to{FieldPoint{4, 4, 3}, {4, 4, 3}, {2, 0, 0}};
+  const FieldSample sample{2.9F, 2, 0};
+  const double worst_m = sampled_error_m(from, to, sample);
+  EXPECT_GT(worst_m, 0.5);
+  EXPECT_TRUE(MovingTriangle(from, to, 0).stays_within(sample, worst_m * 1.01));
+  EXPECT_FALSE(MovingTriangle(from, to, 0).stays_within(sample, worst_m * 0.95));
+}
+
+TEST(MovingTriangle, SeesEverySampleOnItsWay) {
+  // sweeps over (5, 1), which is under neither end
+  SampleField field{8, 4, std::vector<double>(32, 0.0)};
+  field.heights_m[1 * 8 + 4] = 100;
+  const Triangle from{FieldPoint{0, 2, 0}, {2, 2, 0}, {1, 0, 0}};
+  const Triangle to{FieldPoint{5, 2, 0}, {7, 2, 0}, {6, 0, 0}};
+  EXPECT_FALSE(MovingTriangle(from, to, 1e-7).stays_within(field, 1));
+  EXPECT_TRUE(MovingTriangle(from, to, 1e-7).stays_within(field, 101));
+}
+
+}  // namespace
+}  // namespace terrane::hierarchy
