@@ -24,7 +24,7 @@ struct BuildCommand {
   std::filesystem::path out;
   std::string config;
   bool force = false;
-  std::optional<int> tile_cells, jobs;
+  std::optional<int> tile_cells, levels_per_octave, jobs;
   std::optional<double> tolerance_m;
 };
 
@@ -40,6 +40,7 @@ BuildSettings resolve(const BuildCommand& command) {
   apply(command.dem, settings.ingest);
   override_with(command.tolerance_m, settings.build.tolerance_m);
   override_with(command.tile_cells, settings.build.tile_cells);
+  override_with(command.levels_per_octave, settings.build.levels_per_octave);
   override_with(command.jobs, settings.build.jobs);
   tiler::check(settings.build);
   if (settings.dem.empty()) {
@@ -80,9 +81,12 @@ void add_build_command(CLI::App& app, const CommonOptions& common) {
   build->add_option("-o,--out", command->out, "Folder to write to")->required();
   build->add_option("--tolerance", command->tolerance_m,
                     "Largest vertical distance of the finest level to any sample, in metres above "
-                    "0; doubles with each coarser level [1]");
+                    "0; doubles with each octave of levels [1]");
   build->add_option("--tile-cells", command->tile_cells,
                     "Cells along a tile of the finest level, 4 to 1024 [64]");
+  build->add_option(
+      "--levels-per-octave", command->levels_per_octave,
+      "Levels in each doubling of the tolerance, 1 to 4: finer steps between them [1]");
   build->add_option("--jobs", command->jobs, "Threads; 0: one per core [0]");
   build->add_option("--config", command->config,
                     "TOML file with settings; options on the command line win");

@@ -78,6 +78,8 @@ const std::map<std::string, Reader>& readers() {
        [](const Setting& s, BuildSettings& to) { to.build.tolerance_m = s.real_number(); }},
       {"build.tile_cells",
        [](const Setting& s, BuildSettings& to) { to.build.tile_cells = s.whole_number(); }},
+      {"build.levels_per_octave",
+       [](const Setting& s, BuildSettings& to) { to.build.levels_per_octave = s.whole_number(); }},
       {"build.jobs", [](const Setting& s, BuildSettings& to) { to.build.jobs = s.whole_number(); }},
   };
   return known;
@@ -149,8 +151,9 @@ std::string to_toml(const BuildSettings& settings) {
     text += "vertical_unit = " + quoted(std::string(name_of(*ingest.vertical_unit))) + "\n";
   }
   if (!ingest.crs.empty()) text += "crs = " + quoted(ingest.crs) + "\n";
-  text += fmt::format("\n[build]\ntolerance_m = {}\ntile_cells = {}\n", settings.build.tolerance_m,
-                      settings.build.tile_cells);
+  text += fmt::format("\n[build]\ntolerance_m = {}\ntile_cells = {}\nlevels_per_octave = {}\n",
+                      settings.build.tolerance_m, settings.build.tile_cells,
+                      settings.build.levels_per_octave);
   return text;
 }
 

@@ -26,8 +26,15 @@ std::string hash_hex(std::string_view text) {
 }
 
 std::string build_key(const BuildOptions& options, const HeightStatistics& statistics) {
-  return hash_hex(fmt::format("{} {} {} {}", TERRANE_GENERATOR, options.tolerance_m,
-                              options.tile_cells, statistics.fingerprint));
+  return hash_hex(fmt::format("{} {} {} {} {}", TERRANE_GENERATOR, options.tolerance_m,
+                              options.tile_cells, options.levels_per_octave,
+                              statistics.fingerprint));
+}
+
+/// Doubles exactly with each octave.
+double tolerance_of_level_m(const BuildOptions& options, int level) {
+  const int k = options.levels_per_octave;
+  return std::ldexp(options.tolerance_m * std::exp2(static_cast<double>(level % k) / k), level / k);
 }
 
 /// Does the grid run clockwise in the world (rows to the north, or columns to the west)?
@@ -43,7 +50,7 @@ class Build {
  public:
   Build(const HeightSource& heights, const Georeference& place, const HeightStatistics& statistics,
         const BuildOptions& options, const std::filesystem::path& out, Progress& progress)
-      : pyramid_(heights.shape(), options.tile_cells),
+      : pyramid_(heights.shape(), options.tile_cells, options.levels_per_octave),
         world_(place, heights.shape()),
         lattice_(pyramid_, world_, statistics, options.tolerance_m),
         source_{heights, world_, pyramid_, lattice_},
@@ -55,9 +62,11 @@ class Build {
                   .heights = statistics,
                   .crs_wkt = place.crs_wkt(),
                   .tile_cells = options.tile_cells,
+                  .levels_per_octave = options.levels_per_octave,
+                  .tolerance_m = {},
                   .key = build_key(options, statistics)} {
     for (int level = 0; level < pyramid_.level_count(); ++level) {
-      data_set_.tolerance_m.push_back(std::ldexp(options.tolerance_m, level));
+      data_set_.tolerance_m.push_back(tolerance_of_level_m(options, level));
     }
   }
 
@@ -129,7 +138,7 @@ class Build {
 
   bool is_done(const TileId& tile) const {
     if (tile.level > pyramid_.root_level()) return false;
-    return std::filesystem::exists(folder_.finished_tile(tile)) || is_done(tile.parent());
+    return std::filesystem::exists(folder_.finished_tile(tile)) || is_done(pyramid_.parent(tile));
   }
 
   void build_tile(const TileId& tile) const {
@@ -233,6 +242,10 @@ void check(const BuildOptions& options) {
   }
   if (options.tile_cells < 4 || options.tile_cells > 1024) {
     throw ConfigError(fmt::format("--tile-cells {}: must be from 4 to 1024", options.tile_cells));
+  }
+  if (options.levels_per_octave < 1 || options.levels_per_octave > 4) {
+    throw ConfigError(
+        fmt::format("--levels-per-octave {}: must be from 1 to 4", options.levels_per_octave));
   }
   if (options.jobs < 0) {
     throw ConfigError(fmt::format("--jobs {}: must be 0 (all cores) or more", options.jobs));

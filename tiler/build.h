@@ -11,10 +11,12 @@
 namespace terrane::tiler {
 
 struct BuildOptions {
-  /// Largest vertical distance between level 0 and any sample, in metres; doubles with each level.
+  /// Largest vertical distance between level 0 and any sample, in metres; doubles with each octave.
   double tolerance_m = 1;
   /// Cells along a leaf tile, 4 to 1024.
   int tile_cells = 64;
+  /// Levels in each doubling of the tolerance, 1 to 4: that many have the same tiles.
+  int levels_per_octave = 1;
   /// Threads; 0: as many as the machine has cores. Does not change the output.
   int jobs = 0;
 };
@@ -33,10 +35,10 @@ struct BuildResult {
 
 /// Builds the tiles of a DEM into a folder, level by level, as docs/formats.md describes.
 ///
-/// Guarantees: every tile of level l is within tolerance_m * 2^l of every sample that it covers, as
-/// measured in the world; neighbours share their borders as integers; the bytes depend on heights,
-/// georeference and options alone, not on jobs, and not on whether earlier runs were killed: what
-/// they finished is kept. terrane.json is written last.
+/// Guarantees: every tile of level l is within tolerance_m * 2^(l / levels_per_octave) of every
+/// sample that it covers, as measured in the world; neighbours share their borders as integers; the
+/// bytes depend on heights, georeference and options alone, not on jobs, and not on whether earlier
+/// runs were killed: what they finished is kept. terrane.json is written last.
 ///
 /// \pre \p out was claimed (tiler/output_folder.h).
 /// \throws ConfigError, InputError, OutputError.

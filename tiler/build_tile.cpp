@@ -58,8 +58,8 @@ class TileBuild {
   TileBuild(const TileSource& source, const TileId& tile, std::size_t input_triangles)
       : source_(source),
         tile_(tile),
-        samples_(source.heights, source.pyramid.window(tile), normal_reach(tile.level),
-                 input_triangles),
+        samples_(source.heights, source.pyramid.window(tile),
+                 normal_reach(source.pyramid.octave(tile.level)), input_triangles),
         frame_(source.world, source.lattice, samples_.window(), tile.level),
         reference_(samples_, frame_, step_m() / frame_.spacing_m()) {}
 
@@ -134,7 +134,7 @@ class TileBuild {
       mesh.samples.push_back(vertex.sample);
       places.push_back(vertex.place);
     }
-    mesh.normals = terrain_normals(places, frame_, tile_.level, samples_);
+    mesh.normals = terrain_normals(places, frame_, source_.pyramid.octave(tile_.level), samples_);
     return mesh;
   }
 

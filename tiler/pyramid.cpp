@@ -10,9 +10,11 @@ std::string path_of(const TileId& tile) {
   return fmt::format("{}/{}/{}", tile.level, tile.x, tile.y);
 }
 
-Pyramid::Pyramid(GridShape shape, std::int64_t tile_cells)
-    : shape_(shape), tile_cells_(tile_cells) {
-  while (cells_per_side(root_level()) < std::max(shape.columns, shape.rows) - 1) ++level_count_;
+Pyramid::Pyramid(GridShape shape, std::int64_t tile_cells, int levels_per_octave)
+    : shape_(shape), tile_cells_(tile_cells), levels_per_octave_(levels_per_octave) {
+  while (cells_per_side(root_level()) < std::max(shape.columns, shape.rows) - 1) {
+    level_count_ += levels_per_octave;
+  }
 }
 
 std::vector<TileId> Pyramid::tiles(int level) const {
@@ -24,11 +26,21 @@ std::vector<TileId> Pyramid::tiles(int level) const {
 }
 
 std::vector<TileId> Pyramid::children(const TileId& tile) const {
+  if (tile.level == 0) return {};
+  if (!doubles_above(tile.level - 1)) return {{tile.level - 1, tile.x, tile.y}};
   std::vector<TileId> result;
-  for (int quadrant = 0; quadrant < 4 && tile.level > 0; ++quadrant) {
-    if (holds(tile.child(quadrant))) result.push_back(tile.child(quadrant));
+  for (const std::int64_t y : {2 * tile.y, 2 * tile.y + 1}) {
+    for (const std::int64_t x : {2 * tile.x, 2 * tile.x + 1}) {
+      const TileId child{tile.level - 1, x, y};
+      if (holds(child)) result.push_back(child);
+    }
   }
   return result;
+}
+
+TileId Pyramid::parent(const TileId& tile) const {
+  if (!doubles_above(tile.level)) return {tile.level + 1, tile.x, tile.y};
+  return {tile.level + 1, tile.x / 2, tile.y / 2};
 }
 
 bool Pyramid::holds(const TileId& tile) const {

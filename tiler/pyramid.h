@@ -10,20 +10,33 @@ namespace terrane::tiler {
 
 /// The native quadtree over a DEM: leaf tiles of tile_cells x tile_cells cells from the first
 /// sample on, ragged at the last columns and rows, four tiles to one, until one is left.
+///
+/// With levels_per_octave k, k levels in a row have the same tiles (a tile is a *stack* of k
+/// meshes), and every k-th step up puts four tiles into one:
+///
+///     level        0   1   2   3   4   5   6        k = 3
+///     octave       0   0   0   1   1   1   2
+///     cells        64  64  64  128 128 128 256      the last level is the first with one tile
 class Pyramid {
  public:
   /// \param tile_cells  cells along a leaf tile, 1 or more.
-  Pyramid(GridShape shape, std::int64_t tile_cells);
+  /// \param levels_per_octave  levels that share a size of tiles, 1 or more.
+  Pyramid(GridShape shape, std::int64_t tile_cells, int levels_per_octave = 1);
 
   int level_count() const { return level_count_; }
   int root_level() const { return level_count_ - 1; }
+  /// How often tiles have doubled in size at a level.
+  int octave(int level) const { return level / levels_per_octave_; }
 
   /// Does the DEM reach into the tile?
   /// \pre neither x nor y is negative.
   bool holds(const TileId& tile) const;
   /// Tiles of a level, row by row.
   std::vector<TileId> tiles(int level) const;
-  /// The children of a tile that the DEM reaches; none at level 0.
+  /// The tile of the next level that a tile is part of, or the same place.
+  TileId parent(const TileId& tile) const;
+  /// The children of a tile that the DEM reaches: up to four, or one at the same place; none at
+  /// level 0.
   std::vector<TileId> children(const TileId& tile) const;
   /// The samples of a tile, those of its borders included.
   Window window(const TileId& tile) const;
@@ -34,10 +47,12 @@ class Pyramid {
   bool is_on_seam(const TileId& tile, std::int64_t column, std::int64_t row) const;
 
  private:
-  std::int64_t cells_per_side(int level) const { return tile_cells_ << level; }
+  std::int64_t cells_per_side(int level) const { return tile_cells_ << octave(level); }
+  bool doubles_above(int level) const { return octave(level + 1) > octave(level); }
 
   GridShape shape_;
   std::int64_t tile_cells_;
+  int levels_per_octave_;
   int level_count_ = 1;
 };
 

@@ -52,10 +52,10 @@ Eigen::Vector3f normal_at(const hierarchy::Place& place, const TileFrame& frame,
 
 }  // namespace
 
-std::int64_t normal_reach(int level) { return level < 2 ? 1 : std::int64_t{1} << (level - 1); }
+std::int64_t normal_reach(int octave) { return octave < 2 ? 1 : std::int64_t{1} << (octave - 1); }
 
 std::vector<Eigen::Vector3f> terrain_normals(std::span<const hierarchy::Place> places,
-                                             const TileFrame& frame, int level,
+                                             const TileFrame& frame, int octave,
                                              const TileSamples& samples) {
   std::vector<std::vector<std::size_t>> in_patch(samples.patch_count());
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -65,7 +65,7 @@ std::vector<Eigen::Vector3f> terrain_normals(std::span<const hierarchy::Place> p
   std::vector<Eigen::Vector3f> normals(places.size());
   samples.for_each_patch([&](std::size_t k, const Window&, const HeightGrid& grid) {
     for (const std::size_t i : in_patch[k]) {
-      normals[i] = normal_at(places[i], frame, normal_reach(level), grid, samples.window());
+      normals[i] = normal_at(places[i], frame, normal_reach(octave), grid, samples.window());
     }
   });
   return normals;

@@ -11,14 +11,15 @@
 namespace terrane::tiler {
 
 /// Samples on each side that the slope at a vertex is taken over: as wide as the level is coarse.
-std::int64_t normal_reach(int level);
+/// \param octave  of the level, see Pyramid.
+std::int64_t normal_reach(int octave);
 
 /// Normals of the terrain itself (not of the mesh), so that both sides of a seam agree.
 ///
-/// \param samples  read with a margin of normal_reach(level).
+/// \param samples  read with a margin of normal_reach(octave).
 /// \return one unit vector in the world for each place.
 std::vector<Eigen::Vector3f> terrain_normals(std::span<const hierarchy::Place> places,
-                                             const TileFrame& frame, int level,
+                                             const TileFrame& frame, int octave,
                                              const TileSamples& samples);
 
 }  // namespace terrane::tiler

@@ -113,6 +113,7 @@ std::string terrane_json(const DataSet& data_set, const Lattice& lattice, const 
                  {"crs_wkt", data_set.crs_wkt}};
   json["frame"] = frame_json(world);
   json["tile_cells"] = data_set.tile_cells;
+  json["levels_per_octave"] = data_set.levels_per_octave;
   for (int level = 0; level < static_cast<int>(data_set.tolerance_m.size()); ++level) {
     json["levels"].push_back(
         level_json(level, data_set.tolerance_m[level], lattice.step_m(level), records));

@@ -18,6 +18,7 @@ struct DataSet {
   HeightStatistics heights;
   std::string crs_wkt;
   std::int64_t tile_cells = 64;
+  int levels_per_octave = 1;
   std::vector<double> tolerance_m;  ///< of each level
   std::string key;                  ///< what the data set was built from; see build_key()
 };

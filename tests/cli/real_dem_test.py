@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""real_dem_test.py DEM TOLERANCE: `terrane build` and `terrane verify` on a real DEM."""
+"""real_dem_test.py DEM TOLERANCE [LEVELS_PER_OCTAVE]: `terrane build`, `terrane verify` on a real DEM."""
 
 import json
 import pathlib
@@ -34,7 +34,7 @@ def build_arguments(name):
     return (DATA / file).exists(), [DATA / file, *more]
 
 
-def main(name, tolerance_m):
+def main(name, tolerance_m, levels_per_octave="1"):
     present, arguments = build_arguments(name)
     if not present:
         print(f"skipped: {arguments[0]} is not there")
@@ -42,7 +42,8 @@ def main(name, tolerance_m):
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "out"
         status, printed, said = terrane("--quiet", "build", *arguments, "-o", out,
-                                        "--tolerance", tolerance_m)
+                                        "--tolerance", tolerance_m,
+                                        "--levels-per-octave", levels_per_octave)
         print(printed, said)
         if status != 0:
             return 1
@@ -54,4 +55,4 @@ def main(name, tolerance_m):
         return 0 if status == 0 and report["holds"] and samples > 10000 else 1
 
 
-sys.exit(main(sys.argv[1], sys.argv[2]))
+sys.exit(main(*sys.argv[1:]))

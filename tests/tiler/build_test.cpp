@@ -31,6 +31,15 @@ BuildResult build_hills(const std::filesystem::path& out, const BuildOptions& op
   return build(dem, PlainPlace(), dem.statistics(), options, out, progress);
 }
 
+/// What the verifier says of a build; it shares no code with the builder.
+verify::VerifyReport verdict(const FunctionDem& dem, const Georeference& place,
+                             const BuildOptions& options) {
+  const TemporaryFolder folder;
+  NoProgress progress;
+  build(dem, place, dem.statistics(), options, folder.path(), progress);
+  return verify::verify(folder.path(), dem, place, {}, progress);
+}
+
 TEST(Build, WritesTheSameBytesWithAnyNumberOfThreads) {
   const TemporaryFolder one, four;
   build_hills(one.path(), {.tolerance_m = 2, .tile_cells = 16, .jobs = 1});
@@ -67,6 +76,22 @@ TEST(Build, MendsAnOutputThatLostATile) {
   EXPECT_EQ(bytes_below(folder.path()), whole);
 }
 
+TEST(Build, ALadderOfThreeLevelsPerOctaveDoublesWithEveryThird) {
+  const FunctionDem dem({60, 45}, hills);
+  const auto report =
+      verdict(dem, PlainPlace(), {.tolerance_m = 2, .tile_cells = 16, .levels_per_octave = 3});
+  EXPECT_TRUE(report.holds()) << to_text(report);
+  ASSERT_EQ(report.levels.size(), 7U);
+  EXPECT_EQ(report.levels[3].tolerance_m, 4);
+  EXPECT_EQ(report.levels[6].tolerance_m, 8);
+  EXPECT_NEAR(report.levels[4].tolerance_m / report.levels[3].tolerance_m, std::cbrt(2.0), 1e-12);
+  EXPECT_EQ(report.levels[2].tiles, 12);
+  EXPECT_EQ(report.levels[3].tiles, 4);
+  for (std::size_t l = 1; l < 7; ++l) {
+    EXPECT_LE(report.levels[l].triangles, report.levels[l - 1].triangles);
+  }
+}
+
 /// Stops a build after a number of reads, as if it had been killed there.
 class StoppedBuild : public ::testing::TestWithParam<int> {};
 
@@ -96,6 +121,8 @@ TEST(Build, RefusesSettingsOutOfRange) {
   EXPECT_THROW(check({.tolerance_m = -1}), ConfigError);
   EXPECT_THROW(check({.tolerance_m = NAN}), ConfigError);
   EXPECT_THROW(check({.tile_cells = 2}), ConfigError);
+  EXPECT_THROW(check({.levels_per_octave = 0}), ConfigError);
+  EXPECT_THROW(check({.levels_per_octave = 5}), ConfigError);
   EXPECT_THROW(check({.jobs = -1}), ConfigError);
 }
 
@@ -116,15 +143,6 @@ TEST(Build, ADemOfLonelySamplesIsAnInputError) {
   EXPECT_THROW(build(dem, PlainPlace(), dem.statistics(), {}, folder.path(), progress), InputError);
 }
 
-/// What the verifier says of a build; it shares no code with the builder.
-verify::VerifyReport verdict(const FunctionDem& dem, const Georeference& place,
-                             const BuildOptions& options) {
-  const TemporaryFolder folder;
-  NoProgress progress;
-  build(dem, place, dem.statistics(), options, folder.path(), progress);
-  return verify::verify(folder.path(), dem, place, {}, progress);
-}
-
 struct Awkward {
   const char* name;
   GridShape shape;
@@ -138,8 +156,12 @@ class AwkwardDem : public ::testing::TestWithParam<Awkward> {};
 TEST_P(AwkwardDem, HoldsEveryInvariantAtEveryLevel) {
   const FunctionDem dem(GetParam().shape, GetParam().height);
   for (const double tolerance_m : {0.5, 4.0}) {
-    const auto report = verdict(dem, PlainPlace(), {.tolerance_m = tolerance_m, .tile_cells = 8});
-    EXPECT_TRUE(report.holds()) << to_text(report);
+    for (const int levels_per_octave : {1, 3}) {
+      const auto report = verdict(
+          dem, PlainPlace(),
+          {.tolerance_m = tolerance_m, .tile_cells = 8, .levels_per_octave = levels_per_octave});
+      EXPECT_TRUE(report.holds()) << levels_per_octave << " levels per octave\n" << to_text(report);
+    }
   }
 }
 
@@ -153,6 +175,7 @@ INSTANTIATE_TEST_SUITE_P(
         Awkward{
             "Spikes", {37, 41}, [](auto c, auto r) { return c % 9 == 4 && r % 7 == 3 ? 80 : 0.; }},
         Awkward{"Plateaus", {40, 30}, [](auto c, auto r) { return 25.0 * (c / 7 + r / 5); }},
+        Awkward{"Strip", {65, 1000}, [](auto c, auto r) { return 5 * hills(c, r) + c % 5; }},
         Awkward{"LongAndThin", {200, 3}, [](auto c, auto r) { return hills(c, r); }},
         Awkward{"SingleSampleHoles",
                 {40, 40},
@@ -188,7 +211,9 @@ TEST_P(RandomDem, HoldsEveryInvariantAtEveryLevel) {
   const FunctionDem dem(shape, [&](auto column, auto row) {
     return heights_m[static_cast<std::size_t>(row * shape.columns + column)];
   });
-  const BuildOptions options{.tolerance_m = uniform(1, 8), .tile_cells = 8};
+  const BuildOptions options{.tolerance_m = uniform(1, 8),
+                             .tile_cells = 8,
+                             .levels_per_octave = 1 + static_cast<int>(GetParam() % 4)};
 
   const PlainPlace south_up(7, -12);
   EXPECT_TRUE(verdict(dem, south_up, options).holds());

@@ -26,6 +26,20 @@ TEST(Pyramid, TilesOfEveryLevelCoverEveryCellOnce) {
   }
 }
 
+TEST(Pyramid, LevelsOfAnOctaveHaveTheSameTiles) {
+  const Pyramid pyramid({327, 468}, 64, 3);
+  EXPECT_EQ(pyramid.level_count(), 10);
+  for (const int level : {0, 1, 2}) EXPECT_EQ(pyramid.tiles(level).size(), 6U * 8) << level;
+  for (const int level : {3, 4, 5}) EXPECT_EQ(pyramid.tiles(level).size(), 3U * 4) << level;
+  EXPECT_EQ(pyramid.tiles(pyramid.root_level()).size(), 1U);
+  EXPECT_EQ(pyramid.window({2, 1, 1}), pyramid.window({0, 1, 1}));
+  EXPECT_EQ(pyramid.children({2, 1, 1}), (std::vector<TileId>{{1, 1, 1}}));
+  EXPECT_EQ(pyramid.parent({1, 1, 1}), (TileId{2, 1, 1}));
+  EXPECT_EQ(pyramid.children({3, 1, 1}),
+            (std::vector<TileId>{{2, 2, 2}, {2, 3, 2}, {2, 2, 3}, {2, 3, 3}}));
+  EXPECT_EQ(pyramid.parent({2, 3, 2}), (TileId{3, 1, 1}));
+}
+
 TEST(Pyramid, ChildrenCoverTheirParent) {
   const Pyramid pyramid({200, 70}, 64);
   EXPECT_EQ(pyramid.children({1, 0, 0}).size(), 4U);

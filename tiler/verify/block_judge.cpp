@@ -41,9 +41,9 @@ class BlockJudge {
 
   /// The tile above a leaf at rest, all its siblings too while they morph.
   std::vector<const PlacedMesh*> meshes_over(const TileKey& leaf, const Slot& slot) const {
-    const TileKey own{slot.level, leaf.x >> slot.level, leaf.y >> slot.level};
+    const TileKey own = output_.tiling.above(leaf, slot.level);
     const std::vector<TileKey> keys =
-        slot.time == 0 ? std::vector{own} : output_.tiling.children(own.parent());
+        slot.time == 0 ? std::vector{own} : output_.tiling.children(output_.tiling.parent(own));
     std::vector<const PlacedMesh*> meshes;
     for (const TileKey& key : keys) {
       if (const auto& placed = open_.at(key).placed) meshes.push_back(placed.get());

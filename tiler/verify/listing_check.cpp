@@ -65,13 +65,15 @@ class ListingCheck {
       return;
     }
     check_tile_facts(entry);
-    if (entry.parent == key.parent()) check_against_parent(entry, *output_.find(key.parent()));
+    if (entry.parent == output_.tiling.parent(key)) {
+      check_against_parent(entry, *output_.find(output_.tiling.parent(key)));
+    }
   }
 
   void check_tile_facts(const TileEntry& entry) {
     const TileKey& key = entry.key;
     const bool is_root = key.level + 1 == output_.tiling.level_count();
-    const auto parent = is_root ? std::nullopt : std::optional(key.parent());
+    const auto parent = is_root ? std::nullopt : std::optional(output_.tiling.parent(key));
     if (entry.parent != parent) misstated(key, "hangs below the wrong tile in tileset.json");
     if (output_.folder / entry.uri != output_.file_of(key)) {
       misstated(key, fmt::format("its content is '{}'", entry.uri));

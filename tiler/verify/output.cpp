@@ -20,6 +20,7 @@ constexpr double kBoxSlack = 1e-6;  // of the box's size
 // beyond any DEM; below, tile arithmetic cannot overflow
 constexpr std::int64_t kMostSamples = std::int64_t{1} << 40;
 constexpr std::int64_t kMostTileCells = std::int64_t{1} << 20;
+constexpr int kMostLevelsPerOctave = 16;
 
 InputError damaged(const std::filesystem::path& file, const std::string& what) {
   return InputError(
@@ -80,10 +81,14 @@ void check_shape(const Output& output, const std::filesystem::path& file) {
   const GridShape& shape = output.tiling.shape;
   const bool fits = shape.columns >= 2 && shape.rows >= 2 && shape.columns <= kMostSamples &&
                     shape.rows <= kMostSamples && output.tiling.tile_cells >= 1 &&
-                    output.tiling.tile_cells <= kMostTileCells;
+                    output.tiling.tile_cells <= kMostTileCells &&
+                    output.tiling.levels_per_octave >= 1 &&
+                    output.tiling.levels_per_octave <= kMostLevelsPerOctave;
   if (!fits) {
-    throw damaged(file, fmt::format("a DEM of {} x {} samples in tiles of {} cells", shape.columns,
-                                    shape.rows, output.tiling.tile_cells));
+    throw damaged(file, fmt::format("a DEM of {} x {} samples in tiles of {} cells, {} levels per "
+                                    "octave",
+                                    shape.columns, shape.rows, output.tiling.tile_cells,
+                                    output.tiling.levels_per_octave));
   }
   const int expected = output.tiling.level_count();
   if (expected != static_cast<int>(output.levels.size())) {
@@ -102,6 +107,7 @@ void read_terrane_json(const json& document, const std::filesystem::path& file, 
   const json& dem = document.at("dem");
   output.tiling.shape = {dem.at("columns"), dem.at("rows")};
   output.tiling.tile_cells = document.at("tile_cells");
+  output.tiling.levels_per_octave = document.at("levels_per_octave");
   output.frame = read_frame(document.at("frame"), file);
   for (const json& level : document.at("levels")) {
     if (level.at("level").get<std::size_t>() != output.levels.size()) {

@@ -33,7 +33,8 @@ PlacedMesh::PlacedMesh(TileMesh mesh, const Output& output, const World& world)
       tiling_(output.tiling),
       locator_(world, output.tiling.window(mesh_.key)),
       is_flat_(output.frame.is_local),
-      region_(mesh_.key.level + 1 < output.tiling.level_count() ? mesh_.key.parent() : mesh_.key) {
+      region_(mesh_.key.level + 1 < output.tiling.level_count() ? tiling_.parent(mesh_.key)
+                                                                : mesh_.key) {
   place_vertices();
   set_margins();
   fill_buckets();
@@ -94,9 +95,9 @@ void PlacedMesh::for_each_bucket(std::size_t triangle, Visit visit) const {
   const double margin = margin_cells_[triangle];
   const std::int64_t cells = tiling_.tile_cells;
   const auto columns = blocks_touched(low.column - margin, high.column + margin, cells,
-                                      region_.x << region_.level, bucket_columns_);
+                                      region_.x << tiling_.octave(region_.level), bucket_columns_);
   const auto rows = blocks_touched(low.row - margin, high.row + margin, cells,
-                                   region_.y << region_.level, bucket_rows_);
+                                   region_.y << tiling_.octave(region_.level), bucket_rows_);
   for (std::int64_t row = rows[0]; row < rows[1]; ++row) {
     for (std::int64_t column = columns[0]; column < columns[1]; ++column) {
       visit(static_cast<std::size_t>(row * bucket_columns_ + column));
@@ -105,7 +106,7 @@ void PlacedMesh::for_each_bucket(std::size_t triangle, Visit visit) const {
 }
 
 void PlacedMesh::fill_buckets() {
-  const std::int64_t blocks = std::int64_t{1} << region_.level;
+  const std::int64_t blocks = std::int64_t{1} << tiling_.octave(region_.level);
   bucket_columns_ = std::min(blocks, tiling_.tile_columns(0) - region_.x * blocks);
   bucket_rows_ = std::min(blocks, tiling_.tile_rows(0) - region_.y * blocks);
   // counting sort: sizes, then begins, then the triangles themselves
@@ -124,8 +125,8 @@ void PlacedMesh::fill_buckets() {
 }
 
 std::span<const std::uint32_t> PlacedMesh::triangles_over(const TileKey& leaf) const {
-  const std::int64_t column = leaf.x - (region_.x << region_.level);
-  const std::int64_t row = leaf.y - (region_.y << region_.level);
+  const std::int64_t column = leaf.x - (region_.x << tiling_.octave(region_.level));
+  const std::int64_t row = leaf.y - (region_.y << tiling_.octave(region_.level));
   const auto bucket = static_cast<std::size_t>(row * bucket_columns_ + column);
   return std::span(bucket_triangles_)
       .subspan(bucket_begin_[bucket], bucket_begin_[bucket + 1] - bucket_begin_[bucket]);

@@ -101,7 +101,7 @@ void SampleTally::add_rim_sample(const BlockFindings& findings, std::size_t rim_
 
 void SampleTally::note_failure(const Slot& slot, const TileKey& leaf, const Tally& tally) {
   if (tally.holds()) return;
-  const std::pair key(TileKey{slot.level, leaf.x >> slot.level, leaf.y >> slot.level}, slot.time);
+  const std::pair key(tiling_.above(leaf, slot.level), slot.time);
   if (failing_.size() < kMostFailingTiles || failing_.contains(key)) failing_[key].add(tally);
 }
 

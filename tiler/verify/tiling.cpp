@@ -24,11 +24,11 @@ int Tiling::level_count() const {
 }
 
 std::int64_t Tiling::tile_columns(int level) const {
-  return tiles_along(shape.columns, tile_cells << level);
+  return tiles_along(shape.columns, tile_cells << octave(level));
 }
 
 std::int64_t Tiling::tile_rows(int level) const {
-  return tiles_along(shape.rows, tile_cells << level);
+  return tiles_along(shape.rows, tile_cells << octave(level));
 }
 
 bool Tiling::has(const TileKey& key) const {
@@ -37,7 +37,7 @@ bool Tiling::has(const TileKey& key) const {
 }
 
 Window Tiling::window(const TileKey& key) const {
-  const std::int64_t cells = tile_cells << key.level;
+  const std::int64_t cells = tile_cells << octave(key.level);
   Window window{.column = key.x * cells, .row = key.y * cells};
   window.columns = std::min(cells + 1, shape.columns - window.column);
   window.rows = std::min(cells + 1, shape.rows - window.row);
@@ -47,6 +47,7 @@ Window Tiling::window(const TileKey& key) const {
 std::vector<TileKey> Tiling::children(const TileKey& key) const {
   std::vector<TileKey> children;
   if (key.level == 0) return children;
+  if (octave(key.level - 1) == octave(key.level)) return {{key.level - 1, key.x, key.y}};
   for (int child = 0; child < 4; ++child) {
     const TileKey candidate{key.level - 1, 2 * key.x + child % 2, 2 * key.y + child / 2};
     if (has(candidate)) children.push_back(candidate);
@@ -62,6 +63,30 @@ std::vector<TileKey> Tiling::subtree(const TileKey& key) const {
   }
   keys.push_back(key);
   return keys;
+}
+
+TileKey Tiling::parent(const TileKey& key) const {
+  const int shift = octave(key.level + 1) - octave(key.level);
+  return {key.level + 1, key.x >> shift, key.y >> shift};
+}
+
+TileKey Tiling::above(const TileKey& leaf, int level) const {
+  return {level, leaf.x >> octave(level), leaf.y >> octave(level)};
+}
+
+bool Tiling::is_on_side(const TileKey& child, Side side) const {
+  if (octave(child.level + 1) == octave(child.level)) return true;
+  switch (side) {
+    case Side::kWest:
+      return child.x % 2 == 0;
+    case Side::kEast:
+      return child.x % 2 == 1;
+    case Side::kNorth:
+      return child.y % 2 == 0;
+    case Side::kSouth:
+      break;
+  }
+  return child.y % 2 == 1;
 }
 
 Side opposite(Side side) {
@@ -90,20 +115,6 @@ TileKey neighbour(const TileKey& key, Side side) {
       break;
   }
   return {key.level, key.x, key.y + 1};
-}
-
-bool is_on_side(const TileKey& child, Side side) {
-  switch (side) {
-    case Side::kWest:
-      return child.x % 2 == 0;
-    case Side::kEast:
-      return child.x % 2 == 1;
-    case Side::kNorth:
-      return child.y % 2 == 0;
-    case Side::kSouth:
-      break;
-  }
-  return child.y % 2 == 1;
 }
 
 Window with_ring(const Window& window, const GridShape& shape) {

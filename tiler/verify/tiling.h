@@ -17,7 +17,6 @@ struct TileKey {
   std::int64_t y = 0;
 
   auto operator<=>(const TileKey&) const = default;
-  TileKey parent() const { return {level + 1, x / 2, y / 2}; }
 };
 
 /// The side of a tile towards a neighbour.
@@ -31,9 +30,6 @@ Side opposite(Side side);
 /// The tile of the same level beyond a side; it may lie outside the DEM.
 TileKey neighbour(const TileKey& key, Side side);
 
-/// True if a tile's side is part of that side of its parent.
-bool is_on_side(const TileKey& child, Side side);
-
 /// "tile 0/3/4": level, x, y, as in the file name.
 std::string to_string(const TileKey& key);
 
@@ -41,9 +37,12 @@ std::string to_string(const TileKey& key);
 struct Tiling {
   GridShape shape;
   std::int64_t tile_cells = 64;
+  int levels_per_octave = 1;  ///< levels in a row with the same tiles
 
   /// Levels up to the one with a single tile.
   int level_count() const;
+  /// How often tiles have doubled in size at a level.
+  int octave(int level) const { return level / levels_per_octave; }
   std::int64_t tile_columns(int level) const;
   std::int64_t tile_rows(int level) const;
   bool has(const TileKey& key) const;
@@ -51,7 +50,16 @@ struct Tiling {
   /// Samples of a tile, both borders included, cut off at the DEM's end.
   Window window(const TileKey& key) const;
 
-  /// Up to four tiles of the level below, those outside the DEM left out, in the order of rows.
+  TileKey parent(const TileKey& key) const;
+
+  /// The tile of a level that a leaf tile's samples are in.
+  TileKey above(const TileKey& leaf, int level) const;
+
+  /// True if a tile's side is part of that side of its parent.
+  bool is_on_side(const TileKey& child, Side side) const;
+
+  /// Up to four tiles of the level below, those outside the DEM left out, in the order of rows; or
+  /// the one at the same place, where tiles do not double in size.
   std::vector<TileKey> children(const TileKey& key) const;
 
   /// The tile itself and all below it, children before their parent.

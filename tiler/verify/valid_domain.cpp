@@ -70,7 +70,7 @@ void ValidDomain::read_leaf(const HeightSource& heights, const TileKey& leaf) {
   note_line(grid, side_line(tile, Side::kEast));
   note_line(grid, side_line(tile, Side::kSouth));
   if (!any_triangle(grid, tile)) return;
-  for (TileKey key = leaf; key.level < tiling_.level_count(); key = key.parent()) {
+  for (TileKey key = leaf; key.level < tiling_.level_count(); key = tiling_.parent(key)) {
     const std::int64_t index = key.y * tiling_.tile_columns(key.level) + key.x;
     has_triangles_[static_cast<std::size_t>(key.level)][static_cast<std::size_t>(index)] = 1;
   }

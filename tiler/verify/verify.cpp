@@ -20,7 +20,7 @@ namespace terrane::verify {
 namespace {
 
 // 4 x 4 leaf tiles and the 5 above them are read and judged side by side
-constexpr int kBatchLevel = 2;
+constexpr int kBatchOctave = 2;
 constexpr std::size_t kMostLinesOfOneKind = 40;
 constexpr double kStatedSlack = 1e-6;
 constexpr double kStatedSlack_m = 1e-9;
@@ -92,7 +92,7 @@ class Verification {
 
   /// Judges everything below a tile that has been examined, and finishes all tiles below it.
   void visit(const TileKey& key) {
-    if (key.level <= kBatchLevel) {
+    if (output_.tiling.octave(key.level) <= kBatchOctave) {
       visit_batch(key);
       return;
     }
@@ -140,8 +140,7 @@ class Verification {
     for (const auto& of_slot : found.slots) {
       if (of_slot.slot.time != 0) continue;
       const int number = of_slot.slot.level;
-      double& measured_m =
-          open_.at({number, found.leaf.x >> number, found.leaf.y >> number}).measured_error_m;
+      double& measured_m = open_.at(output_.tiling.above(found.leaf, number)).measured_error_m;
       measured_m = std::max(measured_m, of_slot.inside.max_error_m);
       for (const Verdict& verdict : of_slot.rim) measured_m = std::max(measured_m, verdict.error_m);
     }
@@ -269,7 +268,7 @@ class Verification {
     expected = at_next_level(expected);
     SeamVertices found;
     for (const TileKey& child : output_.tiling.children(tile.key)) {
-      if (!is_on_side(child, side)) continue;
+      if (!output_.tiling.is_on_side(child, side)) continue;
       const SeamVertices& vertices = open_.at(child).sides[static_cast<std::size_t>(side)];
       found = unite(found, at_next_level(vertices));
     }

@@ -346,6 +346,7 @@ json terrane_document(const FakeOutput& output,
                    {"dem", {{"columns", output.shape.columns}, {"rows", output.shape.rows}}},
                    {"frame", output.frame},
                    {"tile_cells", output.tile_cells},
+                   {"levels_per_octave", 1},
                    {"levels", json::array()}};
   for (std::size_t level = 0; level < output.levels.size(); ++level) {
     std::size_t tiles = 0, triangles = 0, level_bytes = 0;
