@@ -49,6 +49,15 @@ struct Chosen {
   CollapsePlan plan;
 };
 
+/// What a triangle would do, worked out before it is known whether it may.
+struct Proposal {
+  std::optional<CollapsePlan> plan;  ///< nothing: taken or rejected
+  Stencil stencil;
+};
+
+/// Triangles planned at a time. A larger batch plans more in vain, for neighbours of those taken.
+constexpr std::size_t kBatch = 1024;
+
 class LevelBuilder {
  public:
   LevelBuilder(const SurfaceMesh& finest, const LevelOptions& options)
@@ -101,14 +110,14 @@ class LevelBuilder {
     }
   }
 
-  /// Calls work(judge, i) for i < count, on all threads.
+  /// Calls work(judge, i) for i < count, on all threads, so many to a task.
   template <class Work>
-  void for_each_index(std::size_t count, Work work) {
+  void for_each_index(std::size_t count, Work work, std::size_t grain = 256) {
     if (options_.jobs == 1) {
       for (std::size_t i = 0; i < count; ++i) work(judge_, i);
       return;
     }
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256), [&](const auto& range) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
       CollapseJudge& judge = judges_.local();
       for (std::size_t i = range.begin(); i < range.end(); ++i) work(judge, i);
     });
@@ -198,63 +207,95 @@ class LevelBuilder {
   void choose() {
     chosen_.clear();
     std::erase_if(candidates_, [&](auto i) { return !level_.mesh.is_live(TriangleId{i}); });
-    order_.clear();
-    for (const std::uint32_t i : candidates_) order_.push_back({keys_[i], i});
+    rest_.clear();
+    for (const std::uint32_t i : candidates_) rest_.push_back({keys_[i], i});
     const auto wanted = static_cast<std::size_t>(
-        std::max(1.0, std::round(options_.share * static_cast<double>(order_.size()))));
-    const std::size_t portion = std::max<std::size_t>(64, 4 * wanted);
-    std::size_t done = 0;
-    while (chosen_.size() < wanted && done < order_.size()) {
-      const std::size_t end = std::min(order_.size(), done + portion);
-      const std::size_t ready = sort_portion(done, end);
-      for (; done < ready && chosen_.size() < wanted; ++done) {
-        consider(TriangleId{order_[done].triangle});
-      }
+        std::max(1.0, std::round(options_.share * static_cast<double>(rest_.size()))));
+    while (chosen_.size() < wanted && !rest_.empty()) {
+      next_portion(std::max<std::size_t>(64, 4 * wanted));
+      take_from_portion(wanted);
     }
   }
 
-  /// Brings the next triangles of the order into [begin, the result): by weight, ties by number.
-  std::size_t sort_portion(std::size_t begin, std::size_t end) {
-    const auto first = order_.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto last = order_.begin() + static_cast<std::ptrdiff_t>(end);
-    double bound = std::numeric_limits<double>::infinity();
-    if (last != order_.end()) {
-      std::nth_element(first, last - 1, order_.end());
-      bound = (last - 1)->key;
-    }
-    for_each_index(end - begin, [&](CollapseJudge& judge, std::size_t i) {
-      Entry& entry = order_[begin + i];
-      weigh(judge, TriangleId{entry.triangle});
-      entry.key = keys_[entry.triangle];
+  /// Moves the next triangles of the order, about so many, from rest_ to portion_: by weight, ties
+  /// by number. All that is left in rest_ is heavier.
+  void next_portion(std::size_t size) {
+    const double heaviest = key_of_rank(size);
+    portion_.clear();
+    std::erase_if(rest_, [&](const Entry& entry) {
+      if (entry.key > heaviest) return false;
+      portion_.push_back(entry);
+      return true;
     });
-    // what turned out heavier than the bound may come after triangles of the next portions
-    const auto ready = std::partition(first, last, [&](const Entry& e) { return e.key <= bound; });
-    std::sort(first, ready);
-    return static_cast<std::size_t>(ready - order_.begin());
+    // still in memory order, so that neighbours are looked at one after the other
+    for_each_index(portion_.size(), [&](CollapseJudge& judge, std::size_t i) {
+      weigh(judge, TriangleId{portion_[i].triangle});
+      portion_[i].key = keys_[portion_[i].triangle];
+    });
+    // what turned out heavier may come after triangles that wait
+    std::erase_if(portion_, [&](const Entry& entry) {
+      if (entry.key <= heaviest) return false;
+      rest_.push_back(entry);
+      return true;
+    });
+    std::sort(portion_.begin(), portion_.end());
   }
 
-  void consider(TriangleId t) {
+  /// A key that about so many of rest_ do not exceed: by a sample, as any bound gives one order.
+  double key_of_rank(std::size_t rank) {
+    if (rank >= rest_.size()) return std::numeric_limits<double>::infinity();
+    constexpr std::size_t kSampleSize = 4096;
+    const std::size_t stride = std::max<std::size_t>(1, rest_.size() / kSampleSize);
+    sample_.clear();
+    for (std::size_t i = 0; i < rest_.size(); i += stride) sample_.push_back(rest_[i].key);
+    const auto at = sample_.begin() + static_cast<std::ptrdiff_t>(rank / stride);
+    if (at >= sample_.end()) return std::numeric_limits<double>::infinity();
+    std::nth_element(sample_.begin(), at, sample_.end());
+    return *at;
+  }
+
+  /// Plans collapses a batch ahead, on all threads: the mesh stays as it is until the commit, so a
+  /// plan holds whatever else is taken. What is taken is then decided in order.
+  void take_from_portion(std::size_t wanted) {
+    for (std::size_t begin = 0; begin < portion_.size() && chosen_.size() < wanted;) {
+      const std::size_t end = std::min(portion_.size(), begin + kBatch);
+      for_each_index(
+          end - begin,
+          [&](CollapseJudge& judge, std::size_t i) {
+            propose(judge, TriangleId{portion_[begin + i].triangle}, proposals_[i]);
+          },
+          kBatch / 8);
+      for (std::size_t i = 0; i < end - begin && chosen_.size() < wanted; ++i) {
+        consider(TriangleId{portion_[begin + i].triangle}, proposals_[i]);
+      }
+      begin = end;
+    }
+  }
+
+  void propose(CollapseJudge& judge, TriangleId t, Proposal& proposal) {
+    proposal.plan.reset();
+    if (is_taken(t) || is_known_to_be_rejected(t)) return;
+    const auto frame = judge.frame(t);
+    if (frame) proposal.plan = judge.plan(t, *frame, surfaces_[index(t)]);
+    if (proposal.plan) {
+      proposal.stencil = judge.stencil();
+    } else {
+      reject(t, frame ? judge.rejection() : Rejection::kFlat);
+    }
+  }
+
+  void consider(TriangleId t, const Proposal& proposal) {
     if (is_taken(t)) return count(Rejection::kOverlap);
-    if (is_known_to_be_rejected(t)) return count(rejected_for_[index(t)]);
-    const auto frame = judge_.frame(t);
-    if (!frame) {
-      reject(t, Rejection::kFlat);
-      return count(Rejection::kFlat);
-    }
-    const auto plan = judge_.plan(t, *frame, surfaces_[index(t)]);
-    if (!plan) {
-      reject(t, judge_.rejection());
-      return count(judge_.rejection());
-    }
-    if (!apexes_can_spare_an_edge()) return count(Rejection::kValence);
-    take(t, *plan);
+    if (!proposal.plan) return count(rejected_for_[index(t)]);
+    if (!apexes_can_spare_an_edge(proposal.stencil)) return count(Rejection::kValence);
+    take(t, proposal);
   }
 
   void count(Rejection why) { ++statistics_.rejected[static_cast<std::size_t>(why)]; }
 
   /// Stencils that do not meet may still share an apex: it loses an edge to each.
-  bool apexes_can_spare_an_edge() const {
-    return std::ranges::all_of(judge_.stencil().dying, [&](HalfedgeId h) {
+  bool apexes_can_spare_an_edge(const Stencil& stencil) const {
+    return std::ranges::all_of(stencil.dying, [&](HalfedgeId h) {
       const VertexId apex = level_.mesh.apex(h);
       if (level_.mesh.is_ghost(apex)) return level_.mesh.valence(apex) >= 5 + ghost_loss(apex);
       return lost_edges_[index(apex)] == 0 ||
@@ -267,8 +308,8 @@ class LevelBuilder {
     return at == ghost_losses_.end() ? 0 : at->second;
   }
 
-  void take(TriangleId t, const CollapsePlan& plan) {
-    const Stencil& stencil = judge_.stencil();
+  void take(TriangleId t, const Proposal& proposal) {
+    const Stencil& stencil = proposal.stencil;
     for (const VertexId v : stencil.core) taken_[index(v)] = number_;
     for (const VertexId v : stencil.polygon) {
       if (!level_.mesh.is_ghost(v)) taken_[index(v)] = number_;
@@ -281,7 +322,7 @@ class LevelBuilder {
         ++lost_edges_[index(apex)];
       }
     }
-    chosen_.push_back({t, plan});
+    chosen_.push_back({t, *proposal.plan});
   }
 
   /// Collapses all that were chosen, then looks at the new stars.
@@ -289,8 +330,10 @@ class LevelBuilder {
     records_.emplace_back();
     modified_.clear();
     StencilWalker walker(level_.mesh, CornerTriangles::kMayCollapse);
+    // in memory order: stencils that do not meet may go in any
+    std::ranges::sort(chosen_, {}, &Chosen::triangle);
     for (const Chosen& chosen : chosen_) collapse(walker, chosen);
-    for (const TriangleId t : modified_) bound(t);
+    for_each_index(modified_.size(), [&](CollapseJudge&, std::size_t i) { bound(modified_[i]); });
     std::ranges::fill(lost_edges_, 0);
     ghost_losses_.clear();
   }
@@ -343,7 +386,9 @@ class LevelBuilder {
   std::vector<State> state_;
   double largest_curvature_ = 0;
   std::vector<std::uint32_t> candidates_;  // live triangles, by number
-  std::vector<Entry> order_;
+  std::vector<Entry> portion_, rest_;      // of the order: what comes next, and what comes later
+  std::vector<double> sample_;
+  std::vector<Proposal> proposals_{kBatch};
 
   std::uint32_t number_ = 0;                // of the level under construction
   std::vector<std::uint32_t> taken_;        // level at which a vertex was in a taken stencil

@@ -87,22 +87,25 @@ class Picture:
                 self.pixels[3 * at:3 * at + 3] = bytes(colour)
 
     def png(self, smaller):
-        """The picture, every square of pixels averaged to one."""
+        """The picture, every square of pixels averaged to one; 32 shades a channel keep it small."""
         width, height = self.width // smaller, self.height // smaller
-        rows = bytearray()
+        palette, rows = {}, bytearray()
         for y in range(height):
             rows.append(0)
             for x in range(width):
                 at = [3 * ((y * smaller + j) * self.width + x * smaller + i)
                       for i in range(smaller) for j in range(smaller)]
-                rows.extend(sum(self.pixels[k + c] for k in at) // len(at) for c in range(3))
+                colour = bytes(sum(self.pixels[k + c] for k in at) // len(at) // 8 * 255 // 31
+                               for c in range(3))
+                rows.append(palette.setdefault(colour, len(palette)))
 
         def chunk(kind, data):
             return (struct.pack(">I", len(data)) + kind + data
                     + struct.pack(">I", zlib.crc32(kind + data)))
-        return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2,
+        return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 3,
                                                                    0, 0, 0))
-                + chunk(b"IDAT", zlib.compress(bytes(rows), 9)) + chunk(b"IEND", b""))
+                + chunk(b"PLTE", b"".join(palette)) + chunk(b"IDAT", zlib.compress(bytes(rows), 9))
+                + chunk(b"IEND", b""))
 
 
 def main():

@@ -64,6 +64,20 @@ TEST(LocalSurface, RefusesSixPointsOnACircleAndFewerThanSix) {
   EXPECT_FALSE(fitter.fit());
 }
 
+TEST(LocalSurface, RefusesPointsThatAreNearlyOnAConic) {
+  // posts on two lines of a grid, turned a little out of them: like those that made a vertex of St.
+  // Helens fall 266 m under its neighbours
+  SurfaceFitter fitter;
+  for (int i = 0; i < 13; ++i) {
+    const double u = 20.0 * i - 120, tremble = 1e-3 * (i % 3);
+    fitter.add({u, (i % 2 == 0 ? 10 : -10) + tremble, i % 4 == 0 ? 1.0 : 0.0});
+  }
+  EXPECT_FALSE(fitter.fit());
+  fitter.add({15, 60, 0});
+  fitter.add({-15, -60, 0});
+  EXPECT_TRUE(fitter.fit());
+}
+
 TEST(LocalSurface, AgreesWithEigensPivotedQrOnRandomStencils) {
   std::mt19937 random(1);
   const auto number = [&] { return static_cast<double>(random() % 20001) / 10000 - 1; };

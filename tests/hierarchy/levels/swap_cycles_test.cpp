@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "hierarchy/levels/build_levels.h"
 #include "tests/hierarchy/levels/test_surfaces.h"
 
@@ -36,6 +38,37 @@ TEST(SwapCycles, LeavesNoVertexOfValenceThreeInside) {
   EXPECT_EQ(mesh.triangles.size(), count);
   EXPECT_TRUE(is_height_field(mesh)) << "no triangle was turned over";
   EXPECT_EQ(swap_cycles(mesh).found, 0U);
+}
+
+/// Vertices inside with three triangles, in M_i.
+std::ptrdiff_t cycles_at(const LevelSequence& sequence, std::uint32_t level) {
+  const SurfaceMesh mesh = testing::mesh_at(sequence, level);
+  std::vector<std::set<std::uint32_t>> neighbours(mesh.points.size());
+  std::vector<std::size_t> triangles(mesh.points.size());
+  for (const auto& corners : mesh.triangles) {
+    for (const std::uint32_t v : corners) {
+      ++triangles[v];
+      for (const std::uint32_t other : corners) {
+        if (other != v) neighbours[v].insert(other);
+      }
+    }
+  }
+  std::ptrdiff_t count = 0;
+  for (std::size_t v = 0; v < triangles.size(); ++v) {
+    count += triangles[v] == 3 && neighbours[v].size() == 3;
+  }
+  return count;
+}
+
+TEST(SwapCycles, NoLevelOfASwappedMeshHasACycle) {
+  SurfaceMesh mesh = with_cycles(17);
+  const LevelSequence as_it_is = build_levels(mesh, {.most_levels = 12});
+  swap_cycles(mesh);
+  const LevelSequence swapped = build_levels(mesh, {.most_levels = 12});
+  EXPECT_EQ(cycles_at(as_it_is, 0), 17);
+  for (std::uint32_t level = 0; level <= swapped.level_count(); ++level) {
+    EXPECT_EQ(cycles_at(swapped, level), 0) << level;
+  }
 }
 
 TEST(SwapCycles, LeavesAMeshWithoutCyclesAsItIs) {
