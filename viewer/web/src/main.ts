@@ -1,22 +1,32 @@
 import './view/style.css';
 import {corners} from './core/box';
+import {parsePath} from './core/camera_path';
 import type {Camera} from './core/first_camera';
+import type {Pose} from './core/pose';
 import type {SeamReport} from './core/seams';
+import {kDefaults, type Settings} from './core/settings';
+import {readJson, type Source} from './core/source';
 import {parseTileset, type Tileset} from './core/tileset';
-import {showFatal} from './view/panel';
-import {Viewer, type ViewerStats} from './view/viewer';
+import {showError} from './view/page';
+import {Session} from './view/session';
+import {chooseSource, sourceOfPage} from './view/start_page';
+import type {ViewerStats} from './view/viewer';
 
 /** What tests and the console can do: `window.terrane`. */
 export interface TerraneApi {
   /** Resolves when all detail that is wanted is on the screen. */
   ready(): Promise<void>;
   setCamera(camera: Camera): void;
-  setTolerance(tolerancePx: number): void;
+  setPose(pose: Pose): void;
+  pose(): Pose;
+  set(change: Partial<Settings>): void;
   stats(): ViewerStats;
   checkSeams(): SeamReport;
   /** Draws; the canvas can be read until the current task ends. */
   redraw(): void;
-  /** World z of the terrain at a place, as far as it is loaded. */
+  /** Draws a colour (0xrrggbb) instead of the sky; null: the sky. */
+  setBackdrop(color: number | null): void;
+  /** World z of the shown terrain at a place. */
   groundZ(x: number, y: number): number | undefined;
   /** The world box of the terrain. */
   bounds(): {min: number[]; max: number[]};
@@ -28,16 +38,13 @@ declare global {
   }
 }
 
-async function fetchJson(url: string): Promise<unknown> {
-  const response = await fetch(url);
-  if (!response.ok) throw new Error(`${url}: status ${response.status}`);
-  return response.json();
-}
-
-async function fetchTileset(url: string): Promise<Tileset> {
-  const beside = new URL('terrane.json', url).href;
-  const [tileset, terrane] = await Promise.all([fetchJson(url), fetchJson(beside)]);
-  return parseTileset(tileset, terrane, url);
+async function readTileset(source: Source): Promise<Tileset> {
+  const beside = new URL('terrane.json', source.url).href;
+  const [tileset, terrane] = await Promise.all([
+    readJson(source, source.url),
+    readJson(source, beside),
+  ]);
+  return parseTileset(tileset, terrane, source.url);
 }
 
 function bounds({root}: Tileset) {
@@ -46,35 +53,42 @@ function bounds({root}: Tileset) {
   return {min: extreme(Math.min), max: extreme(Math.max)};
 }
 
-function apiOf(viewer: Viewer, tileset: Tileset): TerraneApi {
+function apiOf(session: Session, tileset: Tileset): TerraneApi {
+  const {viewer} = session;
   return {
     ready: () => viewer.ready(),
     setCamera: (camera) => viewer.setCamera(camera),
-    setTolerance: (tolerancePx) => viewer.setTolerance(tolerancePx),
+    setPose: (pose) => viewer.setPose(pose),
+    pose: () => viewer.navigation.pose,
+    set: (change) => session.set({...session.settings, ...change}),
     stats: () => viewer.stats(),
     checkSeams: () => viewer.checkSeams(),
     redraw: () => void viewer.redraw(),
-    groundZ: (x, y) => viewer.groundZ(x, y),
+    setBackdrop: (color) => viewer.setBackdrop(color),
+    groundZ: (x, y) => viewer.surface().heightAt(x, y),
     bounds: () => bounds(tileset),
   };
 }
 
 /**
- * Starts the viewer. URL parameters: tileset (address, from the page; default ./tileset.json),
- * tolerance (pixels; default 1), antialias (off for slow machines).
+ * Starts the viewer. URL parameters: tileset (address of a tileset.json or .pmtiles, from the page;
+ * default ./tileset.json), tolerance (pixels; default 1), antialias (off for slow machines), path
+ * (address of a camera path to fly along). The hash is the permalink.
  */
 async function start(): Promise<void> {
   const parameters = new URLSearchParams(location.search);
-  const url = new URL(parameters.get('tileset') ?? './tileset.json', location.href).href;
-  const tileset = await fetchTileset(url);
+  const source =
+    (await sourceOfPage(parameters)) ?? (await chooseSource('Choose a terrain to look at.'));
+  const tileset = await readTileset(source);
   const canvas = document.getElementById('terrain') as HTMLCanvasElement;
-  const viewer = new Viewer(canvas, tileset, {
-    tolerancePx: Math.min(16, Math.max(0.5, Number(parameters.get('tolerance')) || 1)),
+  const tolerancePx = Math.min(16, Math.max(0.5, Number(parameters.get('tolerance')) || 1));
+  const session = new Session(canvas, source, tileset, {
+    settings: {...kDefaults, tolerancePx},
     antialias: parameters.get('antialias') !== 'off',
   });
-  window.terrane = apiOf(viewer, tileset);
+  window.terrane = apiOf(session, tileset);
+  const path = parameters.get('path');
+  if (path) await session.play(parsePath(await (await fetch(path)).json()));
 }
 
-start().catch((error: unknown) =>
-  showFatal(error instanceof Error ? error.message : String(error)),
-);
+start().catch((error: unknown) => showError(error instanceof Error ? error.message : String(error)));

@@ -1,30 +1,44 @@
-import {add, dot, length, scale, subtract, type Vec3} from './vec3';
+import {add, length, scale, subtract, type Vec3} from './vec3';
 
-/** An oriented box of 3D Tiles: its centre and three half axes at right angles, in metres. */
+/** An oriented box of 3D Tiles: its centre and three half axes, in metres. */
 export interface Box {
   readonly center: Vec3;
   readonly halfAxes: readonly [Vec3, Vec3, Vec3];
 }
 
-/** Metres from a point to the box; 0 inside. */
-export function distanceToBox(box: Box, point: Vec3): number {
-  let left = subtract(point, box.center);
-  let squared = 0;
-  for (const axis of box.halfAxes) {
-    const half = length(axis);
-    if (half === 0) continue;
-    const along = dot(left, axis) / half;
-    left = subtract(left, scale(axis, along / half));
-    squared += Math.max(0, Math.abs(along) - half) ** 2;
-  }
-  // nothing is left but rounding, unless the box is flat: an axis of length 0 spans nothing
-  const isFlat = box.halfAxes.some((axis) => length(axis) === 0);
-  return Math.sqrt(isFlat ? squared + dot(left, left) : squared);
+/** The smallest box along the axes of the world around something. */
+export interface Bounds {
+  readonly low: Vec3;
+  readonly high: Vec3;
 }
 
-/** Length of the longest diagonal, in metres. */
+const known = new WeakMap<Box, Bounds>();
+
+/** What a box covers along the axes. terrane's boxes are along them already. */
+export function boundsOf(box: Box): Bounds {
+  let bounds = known.get(box);
+  if (!bounds) {
+    const half = ([0, 1, 2] as const).map((k) =>
+      box.halfAxes.reduce((sum, axis) => sum + Math.abs(axis[k]), 0),
+    ) as unknown as Vec3;
+    bounds = {low: subtract(box.center, half), high: add(box.center, half)};
+    known.set(box, bounds);
+  }
+  return bounds;
+}
+
+/** Metres from a point to the box; 0 inside. */
+export function distanceToBounds({low, high}: Bounds, point: Vec3): number {
+  const x = Math.max(0, low[0] - point[0], point[0] - high[0]);
+  const y = Math.max(0, low[1] - point[1], point[1] - high[1]);
+  const z = Math.max(0, low[2] - point[2], point[2] - high[2]);
+  return Math.sqrt(x * x + y * y + z * z);
+}
+
+/** Length of the longest diagonal of what a box covers, in metres. */
 export function diagonal(box: Box): number {
-  return 2 * Math.hypot(...box.halfAxes.map(length));
+  const {low, high} = boundsOf(box);
+  return length(subtract(high, low));
 }
 
 /** The eight corners. */

@@ -20,6 +20,16 @@ export interface MorphUniforms {
   readonly beginM: number;
   /** 1 / (distance from begin to end); 0 for tiles that never morph. */
   readonly perM: number;
+  /** The same for all tiles of a frame. */
+  readonly holdbacks: readonly HoldbackUniform[];
+}
+
+/** A holdback (holdback.ts) as the shader gets it. */
+export interface HoldbackUniform {
+  /** Middle of the box, from the render origin. */
+  readonly centerM: Vec3;
+  readonly halfM: Vec3;
+  readonly heightM: number;
 }
 
 /** The place of a vertex before its morph, from the render origin. */
@@ -32,14 +42,27 @@ export function basePlace(local: Vec3, uniforms: MorphUniforms): Vec3 {
   ];
 }
 
+/** Distance to the eye, or more where something is held back. */
+export function shownDistance(base: Vec3, {eyeM, holdbacks}: MorphUniforms): number {
+  let distanceM = size(f(base[0] - f(eyeM[0])), f(base[1] - f(eyeM[1])), f(base[2] - f(eyeM[2])));
+  for (const {centerM, halfM, heightM} of holdbacks) {
+    const beside = (k: 0 | 1 | 2) =>
+      Math.max(0, f(f(Math.abs(f(base[k] - f(centerM[k])))) - f(halfM[k])));
+    const held = f(f(heightM) - size(beside(0), beside(1), beside(2)));
+    distanceM = Math.max(distanceM, held);
+  }
+  return distanceM;
+}
+
+function size(x: number, y: number, z: number): number {
+  return f(Math.sqrt(f(f(f(x * x) + f(y * y)) + f(z * z))));
+}
+
 /** t of a vertex: 0 shows its level, 1 the next coarser one. */
 export function morphFactor(base: Vec3, uniforms: MorphUniforms): number {
-  const {eyeM, beginM, perM} = uniforms;
-  const x = f(base[0] - f(eyeM[0]));
-  const y = f(base[1] - f(eyeM[1]));
-  const z = f(base[2] - f(eyeM[2]));
-  const distanceM = f(Math.sqrt(f(f(f(x * x) + f(y * y)) + f(z * z))));
-  return Math.min(1, Math.max(0, f(f(distanceM - f(beginM)) * f(perM))));
+  const {beginM, perM} = uniforms;
+  const past = f(shownDistance(base, uniforms) - f(beginM));
+  return Math.min(1, Math.max(0, f(past * f(perM))));
 }
 
 /**

@@ -1,9 +1,10 @@
 // Floats are fine near 0 only: everything is drawn from an origin near the eye. It lies on the
 // coarsest level's lattice, hence on every level's, so a tile's offset from it is a whole number of
 // the tile's steps and exact in float32.
-import type {MorphUniforms} from './morph';
+import type {Holdback} from './holdback';
+import type {HoldbackUniform, MorphUniforms} from './morph';
 import {morphInterval, type Ranges} from './ranges';
-import type {Vec3} from './vec3';
+import {add, scale, subtract, type Vec3} from './vec3';
 
 /** The lattice point next to the eye. */
 export function renderOrigin(eye: Vec3, coarsestStepM: Vec3): Vec3 {
@@ -33,6 +34,7 @@ export function morphUniforms(
   ranges: Ranges,
   eyeM: Vec3,
   originM: Vec3,
+  holdbacks: readonly HoldbackUniform[] = [],
 ): MorphUniforms {
   const offset = (axis: 0 | 1 | 2) => tile.origin[axis] * tile.stepM[axis] - originM[axis];
   const rangeM = ranges[tile.level];
@@ -43,5 +45,13 @@ export function morphUniforms(
     eyeM,
     beginM: interval?.beginM ?? 0,
     perM: interval ? 1 / (interval.endM - interval.beginM) : 0,
+    holdbacks,
   };
+}
+
+/** What the shader needs of a holdback. */
+export function holdbackUniform({bounds, heightM}: Holdback, originM: Vec3): HoldbackUniform {
+  const middle = scale(add(bounds.low, bounds.high), 0.5);
+  const halfM = scale(subtract(bounds.high, bounds.low), 0.5);
+  return {centerM: subtract(middle, originM), halfM, heightM};
 }

@@ -29,7 +29,7 @@ export class RequestQueue<Item extends Keyed, Content> {
     private readonly fetchItem: Fetch<Item, Content>,
     private readonly onLoaded: (item: Item, content: Content) => void,
     private readonly onChange: () => void,
-    private readonly largestInFlight = 6,
+    private readonly largestInFlight = 8,
   ) {}
 
   /** Requests made so far, retries and cancelled ones included. */

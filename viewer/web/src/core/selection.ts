@@ -1,5 +1,6 @@
-// Which tiles to show for a camera: a cut through the quadtree.
-import {distanceToBox} from './box';
+// Which tiles to show for a camera: a cut through the tree.
+import {boundsOf, distanceToBounds} from './box';
+import {farthestDistance, type Holdback} from './holdback';
 import type {Ranges} from './ranges';
 import type {Tile} from './tileset';
 import type {Vec3} from './vec3';
@@ -14,14 +15,24 @@ export interface Visit {
 
 /**
  * Walks from the root: a tile of level l + 1 gives way to its children where its box is closer to
- * the eye than ranges[l]. The visits that are not split cover the root exactly once.
+ * the eye than ranges[l], and no holdback keeps all of the box farther away. The visits that are
+ * not split cover the root exactly once.
  */
-export function selectTiles(root: Tile, eye: Vec3, ranges: Ranges): Visit[] {
+export function selectTiles(
+  root: Tile,
+  eye: Vec3,
+  ranges: Ranges,
+  holdbacks: readonly Holdback[] = [],
+): Visit[] {
   const visits: Visit[] = [];
   const open = [root];
   for (let tile = open.pop(); tile; tile = open.pop()) {
-    const distanceM = distanceToBox(tile.box, eye);
-    const split = tile.children.length > 0 && distanceM < ranges[tile.level - 1]!;
+    const bounds = boundsOf(tile.box);
+    const distanceM = distanceToBounds(bounds, eye);
+    const rangeM = tile.children.length > 0 ? ranges[tile.level - 1]! : 0;
+    const split =
+      distanceM < rangeM &&
+      holdbacks.every((hold) => hold.heightM - farthestDistance(bounds, hold.bounds) < rangeM);
     visits.push({tile, distanceM, split});
     if (split) open.push(...tile.children);
   }
@@ -43,9 +54,11 @@ export function nearestBoxes(root: Tile, eye: Vec3): number[] {
     // a box lies in its parent's: nothing below can be nearer
     if (tile.children.length === 0 || nearestM.every((m, l) => l === 0 || m <= distanceM)) return;
     nearestM[tile.level] = Math.min(nearestM[tile.level]!, distanceM);
-    const below = tile.children.map((child) => [child, distanceToBox(child.box, eye)] as const);
+    const below = tile.children.map(
+      (child) => [child, distanceToBounds(boundsOf(child.box), eye)] as const,
+    );
     for (const [child, m] of below.sort((a, b) => a[1] - b[1])) search(child, m);
   };
-  search(root, distanceToBox(root.box, eye));
+  search(root, distanceToBounds(boundsOf(root.box), eye));
   return nearestM;
 }

@@ -19,30 +19,65 @@ export interface TileVertices {
  * A vertex whose place the parent does not hold keeps its own.
  */
 export function targetNormals(child: TileVertices, parent: TileVertices): Int8Array {
-  const byPlace = new Map<string, number>();
-  const count = parent.positions.length / 3;
-  for (let i = 0; i < count; ++i) byPlace.set(String(place(parent, i, 0)), i);
-
+  const find = finder(parent);
+  const place = new Float64Array(3);
+  const toParent = changeOfLattice(child, parent);
   const normals = Int8Array.from(child.normals);
-  for (let i = 0; 3 * i < normals.length; ++i) {
-    const match = byPlace.get(String(place(child, i, 1)));
-    if (match !== undefined) normals.set(restate(parent, match, child), 3 * i);
+  for (let i = 0; i < normals.length; i += 3) {
+    for (let k = 0; k < 3; ++k) {
+      const steps = child.positions[i + k]! + child.toTargets[i + k]!;
+      place[k] = (steps + toParent.shift[k]!) * toParent.ratio[k]!;
+    }
+    const match = find(place[0]!, place[1]!, place[2]!);
+    if (match >= 0) restate(parent.normals, 3 * match, toParent.ratio, normals, i);
   }
   return normals;
 }
 
-/** World metres of vertex i at morph t, in glTF axes; exact because steps are powers of two. */
-function place(tile: TileVertices, i: number, t: number): Vec3 {
-  const at = (k: number) => tile.positions[3 * i + k]! + t * tile.toTargets[3 * i + k]!;
-  const [sx, sy, sz] = tile.stepM;
-  const [ox, oy, oz] = tile.origin;
-  return [(ox + at(0)) * sx, (oz + at(1)) * sz, (-oy + at(2)) * sy];
+/** (steps of the child + shift) * ratio = steps of the parent; exact: steps are powers of two. */
+function changeOfLattice(child: TileVertices, parent: TileVertices) {
+  const ratio = [0, 2, 1].map((axis) => child.stepM[axis]! / parent.stepM[axis]!);
+  const shift = [0, 2, 1].map((axis, k) => {
+    const sign = k === 2 ? -1 : 1;
+    return sign * (child.origin[axis]! - parent.origin[axis]! / ratio[k]!);
+  });
+  return {ratio, shift};
 }
 
-/** A normal of one tile for the steps of another: stored normals are multiplied by the steps. */
-function restate(from: TileVertices, i: number, to: TileVertices): Vec3 {
-  const ratios = [0, 2, 1].map((axis) => to.stepM[axis]! / from.stepM[axis]!);
-  const scaled = ratios.map((ratio, k) => ratio * from.normals[3 * i + k]!);
-  const size = Math.hypot(...scaled) || 1;
-  return scaled.map((value) => Math.round((127 * value) / size)) as unknown as Vec3;
+/** Finds the vertex at a place, by open addressing; -1: none is there. */
+function finder({positions}: TileVertices): (x: number, y: number, z: number) => number {
+  const count = positions.length / 3;
+  const size = 2 ** Math.ceil(Math.log2(2 * count + 1));
+  const slots = new Int32Array(size).fill(-1);
+  const slotOf = (x: number, y: number, z: number) =>
+    (Math.imul(x, 73856093) ^ Math.imul(y, 19349663) ^ Math.imul(z, 83492791)) & (size - 1);
+  const search = (x: number, y: number, z: number) => {
+    let slot = slotOf(x, y, z);
+    for (let v = slots[slot]!; v >= 0; v = slots[slot]!) {
+      if (positions[3 * v] === x && positions[3 * v + 1] === y && positions[3 * v + 2] === z) break;
+      slot = (slot + 1) & (size - 1);
+    }
+    return slot;
+  };
+  for (let v = 0; v < count; ++v) {
+    slots[search(positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!)] = v;
+  }
+  return (x, y, z) => slots[search(x, y, z)]!;
+}
+
+/** A normal for the steps of another lattice: stored normals are multiplied by the steps. */
+function restate(
+  from: ArrayLike<number>,
+  at: number,
+  ratio: readonly number[],
+  to: Int8Array,
+  i: number,
+): void {
+  const x = from[at]! * ratio[0]!;
+  const y = from[at + 1]! * ratio[1]!;
+  const z = from[at + 2]! * ratio[2]!;
+  const scale = 127 / (Math.sqrt(x * x + y * y + z * z) || 1);
+  to[i] = Math.round(scale * x);
+  to[i + 1] = Math.round(scale * y);
+  to[i + 2] = Math.round(scale * z);
 }

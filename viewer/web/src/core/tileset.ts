@@ -1,5 +1,6 @@
 // Reads tileset.json and terrane.json (docs/formats.md) into a tree of tiles.
 import {diagonal, type Box} from './box';
+import type {TangentPlane} from './geodetic';
 import type {Vec3} from './vec3';
 
 /** One node of the quadtree. */
@@ -14,6 +15,8 @@ export interface Tile {
   /** Address of the glb. */
   readonly url: string;
   readonly triangles: number;
+  /** Largest vertical distance of its mesh to a sample, those of its descendants included. */
+  readonly errorM: number;
   readonly parent: Tile | null;
   /** None for a leaf; fewer than four where the rest has no data. */
   readonly children: readonly Tile[];
@@ -40,17 +43,26 @@ export interface Tileset {
   readonly cellM: number;
   /** World z is height less plan distance squared / (2 R); false: world z is height. */
   readonly curved: boolean;
+  readonly frame: Frame;
+  /** Whom to thank for the data; empty if the files do not say. */
+  readonly attribution: string;
 }
+
+/** Where world (0, 0, 0) is: on the Earth, or in the plan of a DEM without a CRS. */
+export type Frame =
+  | ({readonly kind: 'enu'} & TangentPlane)
+  | {readonly kind: 'local'; readonly x: number; readonly y: number};
 
 /** A tileset that cannot be shown. The message names the file and what is wrong. */
 export class TilesetError extends Error {}
 
 interface TileJson {
   boundingVolume?: {box?: number[]};
+  geometricError?: number;
   content?: {uri?: string};
   children?: TileJson[];
   transform?: number[];
-  extras?: {terrane?: {level?: number; x?: number; y?: number; triangles?: number}};
+  extras?: {terrane?: {level?: number; x?: number; y?: number; triangles?: number; max_error_m?: number}};
 }
 
 interface LevelJson {
@@ -64,7 +76,7 @@ interface TerraneJson {
   format?: string;
   tile_cells: number;
   dem: {columns: number; rows: number; min_height_m: number; max_height_m: number};
-  frame: {kind: string};
+  frame: {kind: string; longitude_deg?: number; latitude_deg?: number; x?: number; y?: number};
   levels: LevelJson[];
 }
 
@@ -93,6 +105,8 @@ export function parseTileset(tileset: unknown, terrane: unknown, baseUrl: string
     maxHeightM: description.dem.max_height_m,
     cellM: smallestCell(root.box, description.dem),
     curved: description.frame.kind === 'enu',
+    frame: parseFrame(description.frame),
+    attribution: (tileset as {asset?: {copyright?: string}}).asset?.copyright ?? '',
   };
 }
 
@@ -124,11 +138,17 @@ function parseTile(json: TileJson, parent: Tile | null, baseUrl: string): Tile {
     box: parseBox(json.boundingVolume?.box, key, baseUrl),
     url: new URL(json.content.uri, baseUrl).href,
     triangles: id.triangles ?? 0,
+    errorM: id.max_error_m ?? json.geometricError ?? 0,
     parent,
     children,
   };
   children.push(...(json.children ?? []).map((child) => parseTile(child, tile, baseUrl)));
   return tile;
+}
+
+function parseFrame({kind, longitude_deg, latitude_deg, x, y}: TerraneJson['frame']): Frame {
+  if (kind !== 'enu') return {kind: 'local', x: x ?? 0, y: y ?? 0};
+  return {kind, longitudeDeg: longitude_deg ?? 0, latitudeDeg: latitude_deg ?? 0};
 }
 
 function parseBox(numbers: number[] | undefined, key: string, baseUrl: string): Box {

@@ -27,6 +27,8 @@ export function quadtree(top: number, isThere: (id: Id) => boolean = () => true)
     maxHeightM: kHalfHeightM,
     cellM: kLeafM / 64,
     curved: false,
+    frame: {kind: 'local', x: 0, y: 0},
+    attribution: '',
   };
 }
 
@@ -52,6 +54,7 @@ function makeTile(parent: Tile | null, id: Id, isThere: (id: Id) => boolean): Ti
     },
     url: '',
     triangles: 1,
+    errorM: 2 ** id.level,
     parent,
     children,
   };

@@ -42,21 +42,21 @@ class HandServer {
 const settle = () => new Promise((resolve) => setTimeout(resolve, 0));
 
 describe('RequestQueue', () => {
-  it('has at most six requests in flight, the first of the list first', () => {
+  it('has at most eight requests in flight, the first of the list first', () => {
     const server = new HandServer();
     server.queue.want(items('abcdefghij'), 0);
-    expect(server.asked.join('')).toBe('abcdef');
+    expect(server.asked.join('')).toBe('abcdefgh');
     server.queue.want(items('abcdefghij'), 1);
-    expect(server.queue.running).toBe(6);
+    expect(server.queue.running).toBe(8);
   });
 
   it('goes on with the next when one has arrived', async () => {
     const server = new HandServer();
-    server.queue.want(items('abcdefgh'), 0);
+    server.queue.want(items('abcdefghij'), 0);
     await server.answer('c');
     expect(server.loaded).toEqual(['c']);
-    server.queue.want(items('abdefgh'), 1);
-    expect(server.asked.join('')).toBe('abcdefg');
+    server.queue.want(items('abdefghij'), 1);
+    expect(server.asked.join('')).toBe('abcdefghi');
   });
 
   it('cancels what is no longer wanted, which is not a failure', async () => {

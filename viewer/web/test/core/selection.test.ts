@@ -1,8 +1,9 @@
 import {describe, expect, it} from 'vitest';
+import {Holdbacks, tilesWithoutChildren, type Holdback} from '../../src/core/holdback';
 import {morphInterval, reducedRanges, wantedRanges, type Ranges} from '../../src/core/ranges';
 import {areTouching} from '../../src/core/seams';
 import {cutOf, nearestBoxes, selectTiles} from '../../src/core/selection';
-import {distanceToBox} from '../../src/core/box';
+import {boundsOf, distanceToBounds} from '../../src/core/box';
 import {tilesOf, type Tile} from '../../src/core/tileset';
 import {length, subtract, type Vec3} from '../../src/core/vec3';
 import {kLeafM, quadtree, randomEye} from './quadtree';
@@ -24,6 +25,7 @@ function coverage(cut: readonly Tile[]): number[] {
   return count;
 }
 
+/** Cuts for random eyes; half of them with tiles missing at random. */
 function* randomCuts(seed: number, count: number) {
   const random = randomSource(seed);
   const {root, levels} = quadtree(kTop);
@@ -31,10 +33,16 @@ function* randomCuts(seed: number, count: number) {
     const eye = randomEye(kTop, random);
     const nearestM = nearestBoxes(root, eye);
     const wanted = wantedRanges(levels, kPixelScale, 0.5 * 32 ** random(), nearestM);
-    // half of the cuts are on their way
-    const share = random() < 0.5 ? 1 : random();
-    const ranges: Ranges = reducedRanges(levels, wanted, share);
-    yield {eye, ranges, cut: cutOf(selectTiles(root, eye, ranges))};
+    const ranges: Ranges = reducedRanges(levels, wanted, 1);
+    const missingShare = random() < 0.5 ? 0 : random() ** 3;
+    const missing = new Set(
+      [...tilesOf(root)].filter((tile) => tile !== root && random() < missingShare),
+    );
+    const isReady = (tile: Tile) => !missing.has(tile);
+    const without = tilesWithoutChildren(root, eye, ranges, isReady);
+    const holdbacks = new Holdbacks().step(without, eye, ranges, 0);
+    const cut = cutOf(selectTiles(root, eye, ranges, holdbacks));
+    yield {eye, ranges, holdbacks, missing, cut};
   }
 }
 
@@ -61,12 +69,12 @@ describe('selectTiles', () => {
 
   it('has the fine side of a border at t = 1 and the coarse side at t = 0', () => {
     let corners = 0;
-    for (const {eye, ranges, cut} of randomCuts(3, 200)) {
+    for (const {eye, ranges, holdbacks, cut} of randomCuts(3, 200)) {
       for (const fine of cut) {
         for (const coarse of cut) {
           if (fine.level + 1 !== coarse.level || !areTouching(fine, coarse)) continue;
           for (const corner of sharedCorners(fine, coarse)) {
-            const distanceM = length(subtract(corner, eye));
+            const distanceM = shownDistance(corner, eye, holdbacks);
             const {endM} = morphInterval(ranges[fine.level]!);
             expect(distanceM).toBeGreaterThan(endM);
             const above = ranges[coarse.level];
@@ -101,6 +109,17 @@ describe('selectTiles', () => {
   });
 });
 
+describe('selectTiles, with tiles missing', () => {
+  it('shows none of them', () => {
+    let held = 0;
+    for (const {holdbacks, missing, cut} of randomCuts(5, 200)) {
+      expect(cut.some((tile) => missing.has(tile))).toBe(false);
+      if (holdbacks.length > 0) ++held;
+    }
+    expect(held).toBeGreaterThan(25);
+  });
+});
+
 describe('nearestBoxes', () => {
   it('finds what a look at every box finds', () => {
     const random = randomSource(4);
@@ -112,12 +131,18 @@ describe('nearestBoxes', () => {
       const expected = Array<number>(kTop + 1).fill(Infinity);
       for (const tile of tilesOf(root)) {
         if (tile.children.length === 0) continue;
-        expected[tile.level] = Math.min(expected[tile.level]!, distanceToBox(tile.box, eye));
+        expected[tile.level] = Math.min(expected[tile.level]!, distanceToBounds(boundsOf(tile.box), eye));
       }
       expect(nearestBoxes(root, eye)).toEqual(expected);
     }
   });
 });
+
+/** The definition of holdback.ts, in doubles. */
+function shownDistance(place: Vec3, eye: Vec3, holdbacks: readonly Holdback[]): number {
+  const held = holdbacks.map(({bounds, heightM}) => heightM - distanceToBounds(bounds, place));
+  return Math.max(length(subtract(place, eye)), ...held);
+}
 
 /** Corners, at half height, that two tiles have in common. */
 function sharedCorners(fine: Tile, coarse: Tile): Vec3[] {

@@ -1,6 +1,9 @@
 import {describe, expect, it} from 'vitest';
+import {distanceToBounds} from '../../src/core/box';
+import {kOctaveS} from '../../src/core/holdback';
 import {Streamer, type Frame, type View} from '../../src/core/streamer';
 import {tilesOf, type Tile} from '../../src/core/tileset';
+import {length, subtract, type Vec3} from '../../src/core/vec3';
 import {kLeafM, quadtree} from './quadtree';
 
 const kTop = 3;
@@ -56,6 +59,12 @@ function isWhole(cut: readonly Tile[]): boolean {
   return leaves.length === 4 ** kTop && new Set(leaves.map(({key}) => key)).size === leaves.length;
 }
 
+/** The definition of holdback.ts, in doubles. */
+function shownDistance(place: Vec3, {eye, holdbacks}: Frame): number {
+  const held = holdbacks.map(({bounds, heightM}) => heightM - distanceToBounds(bounds, place));
+  return Math.max(length(subtract(place, eye)), ...held);
+}
+
 describe('Streamer', () => {
   it('shows a whole cut of loaded tiles in every frame once the root is there', async () => {
     const world = makeWorld();
@@ -78,13 +87,46 @@ describe('Streamer', () => {
     expect(last!.loaded).toBe(last!.wanted);
   });
 
-  it('never shows more detail from one frame to the next than the glide allows', async () => {
+  it('lets detail fade in: what is shown changes little from one frame to the next', async () => {
     const world = makeWorld();
-    let lastShare = 0;
+    let last: Frame | undefined;
     for await (const frame of frames(world, viewFrom(1500, 1500, 300), 60)) {
-      expect(frame.share - lastShare).toBeLessThanOrEqual(1.5 * 0.25 + 1e-9);
-      lastShare = frame.share;
+      if (last && last.cut.length > 0) {
+        const highest = Math.max(0, ...last.holdbacks.map(({heightM}) => heightM));
+        const sinks = highest * (1 - 2 ** (-0.05 / kOctaveS));
+        for (let x = 100; x < kLeafM * 2 ** kTop; x += 700) {
+          const nearer = shownDistance([x, x, 0], last) - shownDistance([x, x, 0], frame);
+          expect(nearer).toBeLessThan(1.001 * sinks + 1e-6);
+        }
+      }
+      last = frame;
     }
+  });
+
+  it('holds back the surroundings of a missing tile, not what is far from it', async () => {
+    const world = makeWorld();
+    world.broken.add('0/1/1');
+    // fine enough to want all of level 0
+    const view = {...viewFrom(4000, 4000, 3000), tolerancePx: 0.1};
+    let last: Frame | undefined;
+    for await (const frame of frames(world, view, 200)) last = frame;
+    const levels = new Map(last!.cut.map(({level, x, y}) => [`${level}/${x}/${y}`, level]));
+    expect(levels.get('1/0/0')).toBe(1);
+    expect([...levels.keys()].filter((key) => key.startsWith('0/'))).toHaveLength(60);
+    expect(last!.settled).toBe(false);
+    expect(last!.gliding).toBe(false);
+  });
+
+  it('follows the tolerance without a jump', async () => {
+    const world = makeWorld();
+    const view = viewFrom(1500, 1500, 300);
+    for await (const _ of frames(world, view, 100));
+    const before = world.streamer.update({...view, tolerancePx: 2}, 6).ranges;
+    const after = world.streamer.update({...view, tolerancePx: 16}, 6.05);
+    expect(after.settled).toBe(false);
+    after.ranges.forEach((range, l) => expect(range).toBeGreaterThan(before[l]! * 0.7));
+    for (let i = 0; i < 20; ++i) world.streamer.update({...view, tolerancePx: 16}, 6.1 + i / 20);
+    expect(world.streamer.update({...view, tolerancePx: 16}, 8).settled).toBe(true);
   });
 
   it('keeps the parent of a failed tile, says so, and recovers', async () => {

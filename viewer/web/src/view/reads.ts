@@ -1,0 +1,42 @@
+// What the page says of the place under the cursor: position, height and how exact it is.
+import {toGeodetic} from '../core/geodetic';
+import {lengthText, roundBelow} from '../core/round_numbers';
+import type {SurfacePoint} from '../core/surface';
+import type {Frame} from '../core/tileset';
+import type {Vec3} from '../core/vec3';
+import {element} from './page';
+
+/** Longitude, latitude and height; or the plan of a DEM without a CRS. */
+export function placeText({place, errorM}: SurfacePoint, frame: Frame): string {
+  const bound = errorM < 10 ? errorM.toFixed(1) : errorM.toFixed(0);
+  if (frame.kind === 'local') {
+    const [x, y] = [place[0] + frame.x, place[1] + frame.y];
+    return `x ${x.toFixed(1)}, y ${y.toFixed(1)}, ${place[2].toFixed(1)} m ± ${bound} m`;
+  }
+  const {longitudeDeg, latitudeDeg, heightM} = toGeodetic(place, frame);
+  const degrees = (deg: number, [more, less]: string) =>
+    `${Math.abs(deg).toFixed(5)}° ${deg < 0 ? less : more}`;
+  return (
+    `${degrees(latitudeDeg, 'NS')}, ${degrees(longitudeDeg, 'EW')}, ` +
+    `${heightM.toFixed(1)} m ± ${bound} m`
+  );
+}
+
+/** The height of a world place. */
+export function heightOf(place: Vec3, frame: Frame): number {
+  return frame.kind === 'local' ? place[2] : toGeodetic(place, frame).heightM;
+}
+
+const kWidestBarPx = 110;
+
+/** @param metresPerPx in the middle of the picture */
+export function showScale(metresPerPx: number): void {
+  const metres = roundBelow(kWidestBarPx * metresPerPx);
+  const bar = element('scale').firstElementChild as HTMLElement;
+  bar.style.width = `${metres / metresPerPx}px`;
+  bar.textContent = lengthText(metres);
+}
+
+export function showCompass(headingDeg: number): void {
+  element('needle').setAttribute('transform', `rotate(${-headingDeg.toFixed(1)} 12 12)`);
+}

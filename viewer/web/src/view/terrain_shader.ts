@@ -1,0 +1,197 @@
+// How a tile is drawn. The morph is core/morph.ts in GLSL: change both together. `offsetM` and the
+// lattice keep the sums exact, so the two sides of a seam come to the same gl_Position.
+import {kMostHoldbacks} from '../core/holdback';
+
+const kPlace = /* glsl */ `
+  attribute vec3 toTarget;
+  uniform vec3 stepM;
+  uniform vec3 offsetM;
+  uniform vec3 eyeM;
+  uniform vec3 originM;
+  uniform float beginM;
+  uniform float perM;
+  uniform float exaggeration;
+  uniform int holdbackCount;
+  uniform vec4 holdbackCenters[${kMostHoldbacks}];
+  uniform vec3 holdbackHalves[${kMostHoldbacks}];
+
+  vec3 zUp(vec3 v) {
+    return vec3(v.x, -v.z, v.y);
+  }
+
+  float shownDistance(vec3 base) {
+    float distanceM = distance(base, eyeM);
+    for (int i = 0; i < ${kMostHoldbacks}; ++i) {
+      if (i >= holdbackCount) break;
+      vec3 beside = max(abs(base - holdbackCenters[i].xyz) - holdbackHalves[i], 0.0);
+      distanceM = max(distanceM, holdbackCenters[i].w - length(beside));
+    }
+    return distanceM;
+  }
+
+  vec4 toScreen(vec3 place) {
+    vec3 seen = vec3(place.xy, place.z * exaggeration);
+    return projectionMatrix * viewMatrix * vec4(seen, 1.0);
+  }
+`;
+
+export const kVertexShader = /* glsl */ `
+  ${kPlace}
+  attribute vec3 targetNormal;
+  uniform float dropPerM;
+  varying vec3 vNormal;
+  varying float vHeightM;
+  varying vec3 vFromEyeM;
+  #ifdef IMAGE
+  attribute vec2 imagePlace;
+  varying vec2 vImagePlace;
+  #endif
+  #ifdef COLORS
+  attribute vec3 vertexColor;
+  varying vec3 vColor;
+  #endif
+
+  void main() {
+    vec3 base = zUp(position) * stepM + offsetM;
+    float t = clamp((shownDistance(base) - beginM) * perM, 0.0, 1.0);
+    vec3 place = base + t * (zUp(toTarget) * stepM);
+    // stored normals are those of the lattice, so they are divided by its steps
+    vNormal = mix(normalize(zUp(normal) / stepM), normalize(zUp(targetNormal) / stepM), t);
+    vec2 plan = place.xy + originM.xy;
+    vHeightM = place.z + originM.z + dot(plan, plan) * dropPerM;
+    vFromEyeM = place - eyeM;
+    #ifdef IMAGE
+    vImagePlace = imagePlace;
+    #endif
+    #ifdef COLORS
+    vColor = vertexColor;
+    #endif
+    gl_Position = toScreen(place);
+  }
+`;
+
+/** Lines on the terrain: triangles and tile borders. */
+export const kLineVertexShader = /* glsl */ `
+  ${kPlace}
+  void main() {
+    vec3 base = zUp(position) * stepM + offsetM;
+    float t = clamp((shownDistance(base) - beginM) * perM, 0.0, 1.0);
+    gl_Position = toScreen(base + t * (zUp(toTarget) * stepM));
+    // a little nearer than the triangles that they lie on
+    gl_Position.z -= 2e-5 * gl_Position.w;
+  }
+`;
+
+export const kLineFragmentShader = /* glsl */ `
+  uniform vec4 lineColor;
+  void main() {
+    gl_FragColor = lineColor;
+  }
+`;
+
+/** The sky in a direction; the haze far away has the colour of the horizon there. */
+export const kSkyColor = /* glsl */ `
+  uniform vec3 horizon;
+  uniform vec3 zenith;
+  uniform vec3 sun;
+  uniform vec3 sunlight;
+  uniform float sunGlow;
+
+  vec3 skyColor(vec3 direction) {
+    // below the horizon there is no ground: a calm backdrop for terrain seen from above
+    vec3 below = mix(zenith, horizon, 0.45);
+    float up = max(direction.z, 0.0);
+    vec3 color = mix(horizon, zenith, 1.0 - pow(1.0 - up, 3.0));
+    color = mix(color, below, smoothstep(0.0, 0.75, -direction.z));
+    float glow = max(dot(direction, sun), 0.0);
+    return color + sunGlow * sunlight * (0.25 * pow(glow, 12.0) + 0.5 * pow(glow, 400.0));
+  }
+`;
+
+// All in sRGB: the usual way of shaded relief.
+export const kFragmentShader = /* glsl */ `
+  uniform int look;
+  uniform sampler2D heightColors;
+  uniform sampler2D slopeColors;
+  uniform sampler2D errorColors;
+  uniform vec2 heightsM;
+  uniform vec3 levelColor;
+  uniform float errorM;
+  uniform float errorPerM;
+  uniform float exaggeration;
+  uniform vec3 skylight;
+  uniform float hazePerM;
+  uniform vec3 contours;
+  uniform float contourStrength;
+  varying vec3 vNormal;
+  varying float vHeightM;
+  varying vec3 vFromEyeM;
+  #ifdef IMAGE
+  uniform sampler2D image;
+  varying vec2 vImagePlace;
+  #endif
+  #ifdef COLORS
+  varying vec3 vColor;
+  #endif
+  ${kSkyColor}
+
+  vec3 ramp(sampler2D colors, float share) {
+    return texture2D(colors, vec2(clamp(share, 0.0, 1.0), 0.5)).rgb;
+  }
+
+  vec3 heightColor() {
+    if (vHeightM < 0.0 && heightsM.x < 0.0) {
+      return mix(vec3(0.62, 0.78, 0.87), vec3(0.16, 0.33, 0.52), sqrt(vHeightM / heightsM.x));
+    }
+    float low = max(heightsM.x, 0.0);
+    return ramp(heightColors, (vHeightM - low) / (heightsM.y - low));
+  }
+
+  vec3 imageColor() {
+    #ifdef IMAGE
+    return texture2D(image, vImagePlace).rgb;
+    #else
+    #ifdef COLORS
+    return vColor;
+    #else
+    return heightColor();
+    #endif
+    #endif
+  }
+
+  vec3 surfaceColor(vec3 n) {
+    if (look == 1) return vec3(0.86, 0.86, 0.85);
+    if (look == 2) return ramp(slopeColors, degrees(acos(clamp(n.z, 0.0, 1.0))) / 60.0);
+    if (look == 3) return imageColor();
+    if (look == 4) return levelColor;
+    if (look == 5) return ramp(errorColors, errorM * errorPerM / length(vFromEyeM) / 1.25);
+    return heightColor();
+  }
+
+  // one line a metre and a bit wide in pixels; every fifth is stronger; none where they would merge
+  float contour(float intervalM) {
+    float steps = vHeightM / intervalM;
+    float perPx = max(fwidth(steps), 1e-6);
+    float px = abs(fract(steps - 0.5) - 0.5) / perPx;
+    float fifth = abs(fract(steps / 5.0 - 0.5) - 0.5) * 5.0 / perPx;
+    float line = 0.7 * (1.0 - smoothstep(0.3, 1.2, px)) * (1.0 - smoothstep(0.12, 0.4, perPx));
+    float strong = (1.0 - smoothstep(0.6, 1.6, fifth)) * (1.0 - smoothstep(0.6, 2.0, perPx));
+    return max(line, 0.9 * strong);
+  }
+
+  void main() {
+    vec3 n = normalize(vNormal);
+    vec3 color = surfaceColor(n);
+    n = normalize(vec3(n.xy, n.z / exaggeration));
+    float sky = 0.5 + 0.5 * n.z;
+    color *= skylight * (0.25 + 0.75 * sky) + sunlight * max(dot(n, sun), 0.0);
+    if (contourStrength > 0.0) {
+      float line = mix(contour(contours.x), contour(contours.y), contours.z);
+      color = mix(color, color * vec3(0.42, 0.3, 0.2), contourStrength * line);
+    }
+    float far = length(vFromEyeM) * hazePerM;
+    vec3 direction = normalize(vFromEyeM);
+    color = mix(skyColor(vec3(direction.xy, max(direction.z, 0.0))), color, exp(-far * far));
+    gl_FragColor = vec4(color, 1.0);
+  }
+`;
