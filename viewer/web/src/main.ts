@@ -26,6 +26,8 @@ export interface TerraneApi {
   redraw(): void;
   /** Draws a colour (0xrrggbb) instead of the sky; null: the sky. */
   setBackdrop(color: number | null): void;
+  /** Keeps what is shown as it is while the camera moves on. */
+  setFrozen(on: boolean): void;
   /** World z of the shown terrain at a place. */
   groundZ(x: number, y: number): number | undefined;
   /** The world box of the terrain. */
@@ -65,6 +67,7 @@ function apiOf(session: Session, tileset: Tileset): TerraneApi {
     checkSeams: () => viewer.checkSeams(),
     redraw: () => void viewer.redraw(),
     setBackdrop: (color) => viewer.setBackdrop(color),
+    setFrozen: (on) => viewer.setFrozen(on),
     groundZ: (x, y) => viewer.surface().heightAt(x, y),
     bounds: () => bounds(tileset),
   };

@@ -27,7 +27,7 @@ export function heightOf(place: Vec3, frame: Frame): number {
   return frame.kind === 'local' ? place[2] : toGeodetic(place, frame).heightM;
 }
 
-const kWidestBarPx = 110;
+const kWidestBarPx = 150;
 
 /** @param metresPerPx in the middle of the picture */
 export function showScale(metresPerPx: number): void {

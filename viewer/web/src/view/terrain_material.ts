@@ -80,6 +80,9 @@ export function terrainMaterial(shared: SharedUniforms, tile: Tile, drape: Drape
   return new ShaderMaterial({
     vertexShader: kVertexShader,
     fragmentShader: kFragmentShader,
+    // lines lie on triangles: those step back a little where lines are shown
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 2,
     defines: {...(drape.image && {IMAGE: 1}), ...(drape.hasColors && {COLORS: 1})},
     uniforms: {
       ...(shared as Record<string, IUniform>),

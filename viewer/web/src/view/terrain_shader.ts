@@ -77,8 +77,6 @@ export const kLineVertexShader = /* glsl */ `
     vec3 base = zUp(position) * stepM + offsetM;
     float t = clamp((shownDistance(base) - beginM) * perM, 0.0, 1.0);
     gl_Position = toScreen(base + t * (zUp(toTarget) * stepM));
-    // a little nearer than the triangles that they lie on
-    gl_Position.z -= 2e-5 * gl_Position.w;
   }
 `;
 
@@ -184,7 +182,10 @@ export const kFragmentShader = /* glsl */ `
     vec3 color = surfaceColor(n);
     n = normalize(vec3(n.xy, n.z / exaggeration));
     float sky = 0.5 + 0.5 * n.z;
-    color *= skylight * (0.25 + 0.75 * sky) + sunlight * max(dot(n, sun), 0.0);
+    vec3 light = skylight * (0.25 + 0.75 * sky) + sunlight * max(dot(n, sun), 0.0);
+    // where colours are to be read, shading only hints at the shape
+    bool isReading = look == 2 || look >= 4;
+    color *= isReading ? mix(vec3(1.0), light, 0.5) : light;
     if (contourStrength > 0.0) {
       float line = mix(contour(contours.x), contour(contours.y), contours.z);
       color = mix(color, color * vec3(0.42, 0.3, 0.2), contourStrength * line);

@@ -168,6 +168,7 @@ export class TerrainView {
       if (!object.parent) this.scene.add(object);
       object.visible = true;
     }
+    content.mesh.material.polygonOffset = shown.length > 1;
     setMorph(content.mesh.material, uniforms);
   }
 }

@@ -72,8 +72,8 @@ export function completeNormals(content: TileContent, parent: TileContent | unde
   geometry.setAttribute('targetNormal', new BufferAttribute(normals, 3, true));
 }
 
-const kTriangleColor = new Vector4(0.05, 0.08, 0.12, 0.45);
-const kBorderColor = new Vector4(0.75, 0.1, 0.35, 1);
+const kTriangleColor = new Vector4(0.05, 0.08, 0.12, 0.3);
+const kBorderColor = new Vector4(0.08, 0.05, 0.2, 1);
 
 export function triangleLines(content: TileContent): Mesh {
   const {geometry, material} = content.mesh;

@@ -36,13 +36,15 @@ export function failures() {
 /**
  * Opens a viewer and waits for its tileset.
  *
+ * @param prepare what to do with the page before it opens
  * @returns the page, and what goes wrong in it: console errors, and requests that fail
  */
-export async function open(context, address, tolerance) {
+export async function open(context, address, tolerance, prepare = () => {}) {
   const problems = {console: [], requests: []};
   const page = await context.newPage();
   await page.route('**', keepLocal);
   listen(page, problems);
+  await prepare(page);
   const url = new URL(address);
   url.searchParams.set('antialias', 'off');
   url.searchParams.set('tolerance', tolerance);

@@ -25,7 +25,7 @@ async function expectParent(page) {
   const message = await page.textContent('#error');
   check(message.includes('tiles/0/1/6.glb: status 404'), `the page says: ${message}`);
   const {levels, shownTolerancePx} = await page.evaluate(() => window.terrane.stats());
-  check(levels[1] > 0, `coarser tiles are shown: ${JSON.stringify(levels)}`);
+  check(levels[1] > 0, `its parent is shown: ${JSON.stringify(levels)}`);
   check(shownTolerancePx > 1, `and what error they have: ${shownTolerancePx.toFixed(1)} px`);
   const seams = await page.evaluate(() => window.terrane.checkSeams());
   check(seams.pairs > 0 && seams.mismatches === 0, `${seams.pairs} seams, none open`);

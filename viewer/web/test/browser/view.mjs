@@ -9,6 +9,7 @@
 import {writeFile} from 'node:fs/promises';
 import {parseArgs} from 'node:util';
 import {check, failures, open, ready, withBrowser} from './browser.mjs';
+import {readPicture} from './picture.mjs';
 
 const {values: options} = parseArgs({
   options: {
@@ -23,25 +24,6 @@ const {values: options} = parseArgs({
     chromium: {type: 'string', default: '/usr/bin/chromium'},
   },
 });
-
-/** Drawn pixels of the canvas (the sky behind it is clear) and their different colours. */
-function readPicture(page) {
-  return page.evaluate(() => {
-    const canvas = document.getElementById('terrain');
-    const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d');
-    window.terrane.redraw();
-    copy.drawImage(canvas, 0, 0);
-    const {data} = copy.getImageData(0, 0, canvas.width, canvas.height);
-    const colors = new Set();
-    let drawn = 0;
-    for (let i = 0; i < data.length; i += 4) {
-      if (data[i + 3] === 0) continue;
-      ++drawn;
-      colors.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
-    }
-    return {drawn: drawn / (data.length / 4), colors: colors.size};
-  });
-}
 
 /** Cameras from afar down to a few samples over the ground, turning on the way. */
 async function cameraPath(page, steps) {

@@ -1,0 +1,155 @@
+// Flies over a served tileset and looks for cracks and pops.
+//
+//     node flight.mjs --url http://127.0.0.1:8080/ [--cameras 12] [--steps 24] [--tolerance 2]
+//
+// Cameras: random ones over the terrain, the same for the same seed. Steps: along a flight from
+// afar down to the ground; what is shown is compared with a mesh that does not change on the way.
+import {parseArgs} from 'node:util';
+import {check, failures, open, ready, withBrowser} from './browser.mjs';
+import {differenceOf, keepPicture, readPicture} from './picture.mjs';
+
+const {values: options} = parseArgs({
+  options: {
+    url: {type: 'string'},
+    cameras: {type: 'string', default: '12'},
+    steps: {type: 'string', default: '24'},
+    tolerance: {type: 'string', default: '2'},
+    chromium: {type: 'string', default: '/usr/bin/chromium'},
+  },
+});
+
+/** Numbers in [0, 1), the same for the same seed (mulberry32). */
+function randomSource(seed) {
+  let state = seed;
+  return () => {
+    state = (state + 0x6d2b79f5) | 0;
+    let t = Math.imul(state ^ (state >>> 15), 1 | state);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
+  };
+}
+
+/** Eyes over the inner part of the terrain, looking down at least 25 degrees. */
+function randomPose({min, max}, random) {
+  const within = (k) => min[k] + (0.25 + 0.5 * random()) * (max[k] - min[k]);
+  const size = Math.hypot(max[0] - min[0], max[1] - min[1]);
+  const [x, y] = [within(0), within(1)];
+  const z = max[2] + size * 0.4 * random() ** 2;
+  return {eye: [x, y, z], headingDeg: 360 * random(), pitchDeg: -25 - 60 * random()};
+}
+
+async function lookForCracks(page) {
+  const random = randomSource(1);
+  const bounds = await page.evaluate(() => window.terrane.bounds());
+  const count = Number(options.cameras);
+  let [pairs, vertices, mismatches, enclosed, loading] = [0, 0, 0, 0, 0];
+  for (let i = 0; i < count; ++i) {
+    await page.evaluate((pose) => window.terrane.setPose(pose), randomPose(bounds, random));
+    loading += (await page.evaluate(() => window.terrane.checkSeams())).mismatches;
+    await ready(page);
+    const seams = await page.evaluate(() => window.terrane.checkSeams());
+    const picture = await readPicture(page);
+    pairs += seams.pairs;
+    vertices += seams.vertices;
+    mismatches += seams.mismatches;
+    enclosed += picture.enclosed;
+  }
+  check(pairs > 0 && mismatches === 0, `${count} cameras: ${pairs} seams, ${vertices} vertices, ${mismatches} apart`);
+  check(loading === 0, `${loading} apart while loading`);
+  check(enclosed === 0, `${enclosed} pixels of backdrop inside the terrain`);
+}
+
+/** From above one side down to the ground in the middle. */
+function flightPose({min, max}, t) {
+  const at = (k, share) => min[k] + share * (max[k] - min[k]);
+  const size = Math.hypot(max[0] - min[0], max[1] - min[1]);
+  const eye = [at(0, 0.3 + 0.3 * t), at(1, 0.1 + 0.4 * t), max[2] + size * (0.02 + 0.3 * (1 - t) ** 2)];
+  return {eye, headingDeg: 20 * t, pitchDeg: -40 + 15 * t};
+}
+
+const kPlaces = 48;
+
+/** Flies with all tiles at hand; the largest change of a height per metre flown. */
+async function changePerMetre(page, bounds, steps) {
+  const poses = [...Array(steps + 1).keys()].map((i) => flightPose(bounds, 0.5 + (0.15 * i) / steps));
+  return page.evaluate(
+    ([flight, {min, max}, places]) => {
+      const at = (i, k, stride) => min[k] + (0.3 + (0.4 * ((i * stride) % places)) / places) * (max[k] - min[k]);
+      const heights = () =>
+        [...Array(places).keys()].map((i) => window.terrane.groundZ(at(i, 0, 1), at(i, 1, 19)));
+      let [largest, held, last] = [0, 0, undefined];
+      for (const pose of flight) {
+        window.terrane.setPose(pose);
+        window.terrane.redraw();
+        held += window.terrane.stats().holdbacks;
+        const now = {eye: pose.eye, heights: heights()};
+        if (last) {
+          const moved = Math.hypot(...now.eye.map((value, k) => value - last.eye[k]));
+          now.heights.forEach((height, i) => {
+            const change = Math.abs((height ?? 0) - (last.heights[i] ?? 0));
+            largest = Math.max(largest, change / moved);
+          });
+        }
+        last = now;
+      }
+      return {largest, held};
+    },
+    [poses, bounds, kPlaces],
+  );
+}
+
+async function lookForPops(page) {
+  const bounds = await page.evaluate(() => window.terrane.bounds());
+  const steps = Number(options.steps);
+  for (let i = 0; i <= steps; ++i) {
+    await page.evaluate((pose) => window.terrane.setPose(pose), flightPose(bounds, i / steps));
+    await ready(page);
+  }
+  const changes = [];
+  for (const count of [steps, 2 * steps, 4 * steps]) {
+    const {largest, held} = await changePerMetre(page, bounds, count);
+    changes.push(largest);
+    check(held === 0, `${count} steps: no tile missing, ${largest.toFixed(4)} m of height per metre flown`);
+  }
+  // a jump would double at each halving of the step
+  const grows = Math.max(changes[1] / changes[0], changes[2] / changes[1]);
+  check(grows < 1.5, `halving the step multiplies it by ${grows.toFixed(2)} at most`);
+}
+
+/** Largest mean difference of consecutive pictures along the flight. */
+async function largestPictureStep(page, bounds, steps, isFrozen) {
+  await page.evaluate((pose) => window.terrane.setPose(pose), flightPose(bounds, 0.5));
+  await page.evaluate((on) => window.terrane.setFrozen(on), isFrozen);
+  let largest = 0;
+  for (let i = 0; i <= steps; ++i) {
+    await page.evaluate((pose) => window.terrane.setPose(pose), flightPose(bounds, 0.5 + (0.1 * i) / steps));
+    await keepPicture(page, String(i % 2));
+    if (i > 0) largest = Math.max(largest, (await differenceOf(page, '0', '1')).mean);
+  }
+  await page.evaluate(() => window.terrane.setFrozen(false));
+  return largest;
+}
+
+async function comparePictures(page) {
+  const bounds = await page.evaluate(() => window.terrane.bounds());
+  const steps = Number(options.steps);
+  const still = await largestPictureStep(page, bounds, steps, true);
+  const blended = await largestPictureStep(page, bounds, steps, false);
+  check(
+    blended > 0 && blended < 1.25 * still + 0.1,
+    `pictures change by ${blended.toFixed(2)} of 255 from frame to frame, ${still.toFixed(2)} with a fixed mesh`,
+  );
+}
+
+async function run(context) {
+  const {page, problems} = await open(context, options.url, options.tolerance);
+  await ready(page);
+  await lookForCracks(page);
+  await lookForPops(page);
+  await comparePictures(page);
+  check(problems.console.length === 0, `console errors: ${problems.console.join('; ') || 'none'}`);
+}
+
+withBrowser(options.chromium, run)
+  .catch((error) => check(false, error.message))
+  .finally(() => process.exit(failures() > 0 ? 1 : 0));

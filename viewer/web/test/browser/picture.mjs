@@ -1,0 +1,76 @@
+// What the canvas shows. A magenta backdrop instead of the sky makes cracks visible.
+const kMagenta = 0xff00ff;
+
+/**
+ * Share of the canvas that terrain covers, its different colours, and the pixels of backdrop that
+ * terrain surrounds: those of a crack, or of a hole in the data.
+ */
+export function readPicture(page) {
+  return page.evaluate((magenta) => {
+    const canvas = document.getElementById('terrain');
+    const {width, height} = canvas;
+    const copy = new OffscreenCanvas(width, height).getContext('2d');
+    window.terrane.setBackdrop(magenta);
+    window.terrane.redraw();
+    copy.drawImage(canvas, 0, 0);
+    window.terrane.setBackdrop(null);
+    const pixels = new Uint32Array(copy.getImageData(0, 0, width, height).data.buffer);
+    const isBackdrop = (i) => pixels[i] === 0xffff00ff;
+    const colors = new Set();
+    let backdrop = 0;
+    for (let i = 0; i < pixels.length; ++i) {
+      if (isBackdrop(i)) ++backdrop;
+      else colors.add(pixels[i]);
+    }
+
+    // all backdrop that can be walked to from the border of the picture
+    const reached = new Uint8Array(pixels.length);
+    const open = [];
+    const visit = (i) => {
+      if (reached[i] || !isBackdrop(i)) return;
+      reached[i] = 1;
+      open.push(i);
+    };
+    for (let x = 0; x < width; ++x) [x, (height - 1) * width + x].forEach(visit);
+    for (let y = 0; y < height; ++y) [y * width, y * width + width - 1].forEach(visit);
+    let outside = 0;
+    for (let i = open.pop(); i !== undefined; i = open.pop()) {
+      ++outside;
+      const x = i % width;
+      if (x > 0) visit(i - 1);
+      if (x < width - 1) visit(i + 1);
+      if (i >= width) visit(i - width);
+      if (i < pixels.length - width) visit(i + width);
+    }
+    return {drawn: 1 - backdrop / pixels.length, colors: colors.size, enclosed: backdrop - outside};
+  }, kMagenta);
+}
+
+/** The canvas as it is, for differenceTo(). Kept in the page under a name. */
+export function keepPicture(page, name) {
+  return page.evaluate((key) => {
+    const canvas = document.getElementById('terrain');
+    const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d');
+    window.terrane.redraw();
+    copy.drawImage(canvas, 0, 0);
+    window.kept ??= {};
+    window.kept[key] = copy.getImageData(0, 0, canvas.width, canvas.height).data;
+  }, name);
+}
+
+/** Mean and largest difference of two kept pictures, in steps of 255. */
+export function differenceOf(page, a, b) {
+  return page.evaluate(
+    ([first, second]) => {
+      const [p, q] = [window.kept[first], window.kept[second]];
+      let [sum, largest] = [0, 0];
+      for (let i = 0; i < p.length; ++i) {
+        const difference = Math.abs(p[i] - q[i]);
+        sum += difference;
+        largest = Math.max(largest, difference);
+      }
+      return {mean: sum / p.length, largest};
+    },
+    [a, b],
+  );
+}
