@@ -211,7 +211,7 @@ class SeamBuild {
       meshes[0].vertices.push_back(at(vertex.place));
     }
     if (finer_.places.empty()) return meshes;
-    for (const double t : {0.25, 0.5, 0.75}) {
+    for (const double t : measured_moments(reference_.field())) {
       std::vector<WorldVertex> moving;
       for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
         const WorldVertex& to = meshes[0].vertices[result.target[v]];

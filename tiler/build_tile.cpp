@@ -149,7 +149,7 @@ class TileBuild {
       meshes[0].vertices.push_back({plan_of(vertex.place), world_of(vertex.place)});
     }
     if (finer.places.empty()) return meshes;
-    for (const double t : {0.25, 0.5, 0.75}) {
+    for (const double t : measured_moments(reference_.field())) {
       meshes.push_back({{}, finer.triangles, rim_of(input.vertices, finer.triangles)});
       for (std::size_t v = 0; v < finer.places.size(); ++v) {
         const Place& target = result.mesh.vertices[result.target[v]].place;

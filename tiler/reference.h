@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "hierarchy/collapse/sample_field.h"
@@ -30,6 +31,13 @@ class Reference {
   hierarchy::SampleField field_;
   std::vector<hierarchy::FieldSample> kept_;  // if the field is reduced: what it holds
 };
+
+/// The moments of a blend at which it is measured in the world. Every sample of the reference has
+/// been held against the blend at every moment; what a reduced one leaves out has not.
+inline std::span<const double> measured_moments(const hierarchy::SampleField& reference) {
+  static constexpr double kMoments[] = {0.5, 0.125, 0.25, 0.375, 0.625, 0.75, 0.875};
+  return std::span(kMoments).first(reference.is_reduced() ? std::size(kMoments) : 1);
+}
 
 /// Share of the tolerance beyond which samples are worth learning: they are over it soon.
 inline constexpr double kNotedShare = 0.9;

@@ -21,7 +21,7 @@ class MovingTriangle {
 
   /// Is it within the tolerance of the sample at all t at which the sample is under it?
   ///
-  /// What lasts less than 1 / 4096 of the time, as a sample leaves the triangle or comes under it,
+  /// What lasts less than 1 / 1024 of the time, as a sample leaves the triangle or comes under it,
   /// is left to the triangle on the other side of the edge.
   bool stays_within(const FieldSample& sample, double tolerance_m) const;
 
@@ -29,6 +29,8 @@ class MovingTriangle {
   bool stays_within(const SampleField& field, double tolerance_m) const;
 
  private:
+  class RowSweep;
+
   /// Twice the area between the sample and an edge, at times that do not matter here: affine.
   struct Affine {
     double constant, per_column, per_row;

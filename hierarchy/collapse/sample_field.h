@@ -183,42 +183,59 @@ bool for_each_sample(const FieldPoint& a, const FieldPoint& b, const FieldPoint&
   });
 }
 
-/// Calls visit(sample) for each sample of the field in the convex hull of 3 to 6 points or nearer
-/// to it than \p slack_cells; if the field is reduced, for some beside it too. Stops and returns
-/// false as soon as visit does. Samples without data are left out.
-template <class Visit>
-bool for_each_sample_of_hull(std::span<const FieldPoint> points, const SampleField& field,
-                             double slack_cells, Visit&& visit) {
-  // of all pairs, the outermost are the hull's sides
-  std::array<FieldSide, 15> sides;
-  std::size_t count = 0;
-  const auto join_all = [&](std::span<const FieldPoint> ends) {
-    for (const FieldPoint& p : ends) {
-      for (const FieldPoint& q : ends) {
-        if (&p < &q) sides[count++] = {&p, &q};
+/// The sides of the convex hull of 3 to 6 points, and the lines between all others of them.
+class HullSides {
+ public:
+  explicit HullSides(std::span<const FieldPoint> points) {
+    for (const FieldPoint& p : points) {
+      for (const FieldPoint& q : points) {
+        if (&p < &q) sides_[count_++] = {&p, &q};
       }
     }
-  };
-  if (!field.is_reduced()) {
-    join_all(points);
-    return for_each_span_between(
-        std::span<const FieldSide>(sides).first(count), {field.columns, field.rows}, slack_cells,
-        [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-          const double* heights = field.row(row);
-          for (std::int64_t column = first; column <= last; ++column) {
-            if (std::isnan(heights[column])) continue;
-            if (!visit(FieldSample{static_cast<float>(column), static_cast<float>(row),
-                                   heights[column]})) {
-              return false;
-            }
-          }
-          return true;
-        });
   }
-  std::array<FieldPoint, 6> block_points;
-  for (std::size_t k = 0; k < points.size(); ++k) block_points[k] = in_blocks(points[k], field);
-  join_all(std::span<const FieldPoint>(block_points).first(points.size()));
-  return for_each_kept_between(std::span<const FieldSide>(sides).first(count), field, slack_cells,
+  std::span<const FieldSide> sides() const { return std::span(sides_).first(count_); }
+
+ private:
+  std::array<FieldSide, 15> sides_;
+  std::size_t count_ = 0;
+};
+
+/// As for_each_span(), for the convex hull of 3 to 6 points; if that is small, for its box.
+template <class Visit>
+bool for_each_span_of_hull(std::span<const FieldPoint> points, const GridShape& shape,
+                           double slack_cells, Visit&& visit) {
+  // columns that cost less than to find out which of them to leave out
+  constexpr double kFewColumns = 8;
+  const auto [left, right] = std::ranges::minmax(points, {}, &FieldPoint::column);
+  if (right.column - left.column >= kFewColumns) {
+    return for_each_span_between(HullSides(points).sides(), shape, slack_cells, visit);
+  }
+  const auto [top, bottom] = std::ranges::minmax(points, {}, &FieldPoint::row);
+  const auto from = [&](double at) {
+    return std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(at - slack_cells)));
+  };
+  const auto to = [&](double at, std::int64_t count) {
+    return std::min(count - 1, static_cast<std::int64_t>(std::floor(at + slack_cells)));
+  };
+  const std::int64_t first = from(left.column), last = to(right.column, shape.columns);
+  if (first > last) return true;
+  for (std::int64_t row = from(top.row); row <= to(bottom.row, shape.rows); ++row) {
+    if (!visit(row, first, last)) return false;
+  }
+  return true;
+}
+
+/// Calls visit(sample) for each sample of a reduced field that may lie in the convex hull of 3 to 6
+/// points. Stops and returns false as soon as visit does.
+template <class Visit>
+bool for_each_kept_of_hull(std::span<const FieldPoint> points, const SampleField& field,
+                           double slack_cells, Visit&& visit) {
+  std::array<FieldPoint, 6> counted_in_blocks;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    counted_in_blocks[k] = in_blocks(points[k], field);
+  }
+  const HullSides hull(std::span<const FieldPoint>(counted_in_blocks).first(points.size()));
+  return for_each_kept_between(hull.sides(), field, slack_cells,
                                [&](std::size_t k) { return visit(field.kept[k]); });
 }
 

@@ -32,8 +32,9 @@ bool stays_up(const Triangle& from, const Triangle& to) {
   return true;
 }
 
-/// Largest distance at many moments at which the sample is under the triangle.
-double sampled_error_m(const Triangle& from, const Triangle& to, const FieldSample& sample) {
+/// Largest distance at many moments at which the sample is under the triangle, or nearly.
+double sampled_error_m(const Triangle& from, const Triangle& to, const FieldSample& sample,
+                       double slack = 0) {
   constexpr int kMoments = 4000;
   const FieldPoint s{sample.column, sample.row, 0};
   double worst_m = 0;
@@ -44,7 +45,7 @@ double sampled_error_m(const Triangle& from, const Triangle& to, const FieldSamp
     const double a = doubled_area(at[1], at[2], s) / whole;
     const double b = doubled_area(at[2], at[0], s) / whole;
     const double c = doubled_area(at[0], at[1], s) / whole;
-    if (a < 0 || b < 0 || c < 0) continue;
+    if (a < -slack || b < -slack || c < -slack) continue;
     worst_m = std::max(worst_m, std::abs(a * at[0].height_m + b * at[1].height_m +
                                          c * at[2].height_m - sample.height_m));
   }
@@ -78,7 +79,9 @@ TEST(MovingTriangle, AgreesWithALookAtManyMoments) {
     const FieldSample sample{float(s.column), float(s.row), s.height_m};
     const double worst_m = sampled_error_m(from, to, sample);
     const MovingTriangle moving(from, to, 0);
-    EXPECT_TRUE(moving.stays_within(sample, worst_m * 1.001 + 0.01)) << n;
+    // a passage between two of the moments is one nearby at a moment
+    const double nearby_m = sampled_error_m(from, to, sample, 0.003);
+    EXPECT_TRUE(moving.stays_within(sample, nearby_m * 1.001 + 0.01)) << n;
     ++sound;
     // what lasts long is found; a moment at an edge is left to the neighbour
     if (worst_m < 0.5 || moving.stays_within(sample, worst_m * 0.9)) continue;
