@@ -30,8 +30,8 @@ interface Colors {
 
 /** Height of the sun in degrees, and the light then. */
 const kDay: readonly (readonly [number, Colors])[] = [
-  [-14, hexColors(0x2b3347, 0x262c3c, 0x0d1420, 0x05080f)],
-  [-4, hexColors(0x3a3a52, 0x3c425a, 0x4b4763, 0x141d38)],
+  [-14, hexColors(0x3d4964, 0x333b4f, 0x141d2c, 0x070b14)],
+  [-4, hexColors(0x434666, 0x424a64, 0x4b4763, 0x141d38)],
   [0, hexColors(0x8a5a48, 0x55566c, 0xd98f6c, 0x31456f)],
   [6, hexColors(0xd99a66, 0x636c84, 0xf0c39a, 0x5f86b8)],
   [20, hexColors(0xcdb894, 0x6b7684, 0xd9e3ea, 0x5f96cc)],

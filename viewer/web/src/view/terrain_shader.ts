@@ -158,7 +158,7 @@ export const kFragmentShader = /* glsl */ `
   }
 
   vec3 surfaceColor(vec3 n) {
-    if (look == 1) return vec3(0.86, 0.86, 0.85);
+    if (look == 1) return vec3(0.8, 0.8, 0.79);
     if (look == 2) return ramp(slopeColors, degrees(acos(clamp(n.z, 0.0, 1.0))) / 60.0);
     if (look == 3) return imageColor();
     if (look == 4) return levelColor;

@@ -1,0 +1,40 @@
+import {MeshoptDecoder, MeshoptEncoder} from 'meshoptimizer';
+import {beforeAll, describe, expect, it} from 'vitest';
+import {readGlb, type DecodeMeshopt} from '../../src/core/glb';
+import {glbOf, makeTile} from '../synthetic_tiles.mjs';
+
+const decode: DecodeMeshopt = (...stream) =>
+  MeshoptDecoder.decodeGltfBuffer(...(stream as Parameters<typeof MeshoptDecoder.decodeGltfBuffer>));
+
+const bytesOf = (tile: unknown): ArrayBuffer => {
+  const made = glbOf(tile as Parameters<typeof glbOf>[0]) as Uint8Array;
+  return Uint8Array.from(made).buffer;
+};
+
+beforeAll(async () => {
+  await MeshoptEncoder.ready;
+  await MeshoptDecoder.ready;
+});
+
+describe('readGlb', () => {
+  it('gives the numbers that were written', () => {
+    const tile = makeTile(1, 1, 1)!;
+    const read = readGlb(bytesOf(tile), decode);
+    expect(read.origin).toEqual(tile.origin);
+    expect(read.positions).toEqual(Int16Array.from(tile.positions as number[]));
+    expect(read.toTargets).toEqual(Int16Array.from(tile.toTargets as number[]));
+    expect(read.normals).toEqual(Int8Array.from(tile.normals as number[]));
+    // the codec may turn a triangle's corners, and nothing else
+    const turned = (indices: ArrayLike<number>) =>
+      Array.from({length: indices.length / 3}, (_, i) => {
+        const [a, b, c] = [indices[3 * i]!, indices[3 * i + 1]!, indices[3 * i + 2]!];
+        const first = Math.min(a, b, c);
+        return first === a ? [a, b, c] : first === b ? [b, c, a] : [c, a, b];
+      });
+    expect(turned(read.indices)).toEqual(turned(tile.indices as number[]));
+  });
+
+  it('says what is missing', () => {
+    expect(() => readGlb(new ArrayBuffer(64), decode)).toThrow('no glb');
+  });
+});
