@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Builds tiles, serves them with `terrane serve` and looks at them with a headless Chromium.
 
-What is asserted of the page is in viewer/web/test/browser/view.mjs. Ends with 77 (skipped) where
-Chromium, Node, the viewer or the DEM is missing.
+What is asserted of the page is in viewer/web/test/browser: view.mjs, flight.mjs and looks.mjs. Ends
+with 77 (skipped) where Chromium, Node, the viewer or the DEM is missing.
 """
 
 import argparse
@@ -14,7 +14,8 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-VIEW = ROOT / "viewer/web/test/browser/view.mjs"
+BROWSER = ROOT / "viewer/web/test/browser"
+IMAGES = ROOT / "docs/images/viewer"
 SKIPPED = 77
 
 
@@ -79,8 +80,13 @@ def main():
     subprocess.run([options.terrane, "build", dem, "-o", tiles, "--tolerance", tolerance_m],
                    check=True)
     with served(options.terrane, tiles) as url:
-        screenshot = options.work / "screenshot.png"
-        return subprocess.run(["node", VIEW, "--url", url, "--screenshot", screenshot]).returncode
+        checks = [["view.mjs", "--screenshot", options.work / "screenshot.png", "--steps", "12"],
+                  ["flight.mjs", "--cameras", "6", "--steps", "8"]]
+        if options.terrain == "caldera":
+            checks.append(["looks.mjs", "--images", IMAGES])
+        codes = [subprocess.run(["node", BROWSER / script, "--url", url, *rest]).returncode
+                 for script, *rest in checks]
+        return max(codes)
 
 
 if __name__ == "__main__":

@@ -41,7 +41,7 @@ export class Measure {
     this.canvas.classList.toggle('measuring', on);
     element('profile').hidden = !on;
     element('profile-text').textContent = 'Click two places on the terrain.';
-    element('profile-plot').replaceChildren();
+    this.hidePlot(true);
     this.follow();
   }
 
@@ -49,6 +49,8 @@ export class Measure {
   add(place: Vec3): void {
     if (this.ends.length === 2) this.ends = [];
     this.ends.push(place);
+    // a first click needs to see the terrain, not the plot before
+    this.hidePlot(this.ends.length < 2);
     if (this.ends.length === 2) this.showProfile();
     else element('profile-text').textContent = 'Click the other end.';
     this.follow();
@@ -65,6 +67,10 @@ export class Measure {
       .flatMap((place) => this.terrain.screenOf(place) ?? [])
       .map(({x, y}) => svg('circle', {cx: x, cy: y, r: 5}));
     marks.replaceChildren(line, ...ends);
+  }
+
+  private hidePlot(on: boolean): void {
+    element<SVGElement>('profile-plot').toggleAttribute('hidden', on);
   }
 
   private line(): Vec3[] {

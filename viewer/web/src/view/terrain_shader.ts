@@ -166,7 +166,8 @@ export const kFragmentShader = /* glsl */ `
     return heightColor();
   }
 
-  // one line a metre and a bit wide in pixels; every fifth is stronger; none where they would merge
+  // lines a pixel and a bit wide; every fifth is stronger; none where they would merge, and none on
+  // level ground that happens to lie at such a height
   float contour(float intervalM) {
     float steps = vHeightM / intervalM;
     float perPx = max(fwidth(steps), 1e-6);
@@ -174,7 +175,7 @@ export const kFragmentShader = /* glsl */ `
     float fifth = abs(fract(steps / 5.0 - 0.5) - 0.5) * 5.0 / perPx;
     float line = 0.7 * (1.0 - smoothstep(0.3, 1.2, px)) * (1.0 - smoothstep(0.12, 0.4, perPx));
     float strong = (1.0 - smoothstep(0.6, 1.6, fifth)) * (1.0 - smoothstep(0.6, 2.0, perPx));
-    return max(line, 0.9 * strong);
+    return max(line, 0.9 * strong) * smoothstep(2e-4, 1e-3, perPx);
   }
 
   void main() {
