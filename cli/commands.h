@@ -14,6 +14,8 @@ void add_build_command(CLI::App& app, const CommonOptions& common);
 void add_simplify_command(CLI::App& app, const CommonOptions& common);
 void add_info_command(CLI::App& app, const CommonOptions& common);
 void add_levels_command(CLI::App& app, const CommonOptions& common);
+void add_pack_command(CLI::App& app, const CommonOptions& common);
+void add_unpack_command(CLI::App& app, const CommonOptions& common);
 void add_verify_command(CLI::App& app, const CommonOptions& common);
 void add_serve_command(CLI::App& app, const CommonOptions& common);
 void add_volume_command(CLI::App& app, const CommonOptions& common);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "archive/archive.h"
 #include "cli/commands.h"
 #include "cli/dem_options.h"
 #include "cli/terminal_progress.h"
@@ -24,10 +25,8 @@ void print_row(std::string_view name, const std::string& value) {
   fmt::print("{:<16}{}\n", name, value);
 }
 
-void describe_output(const std::filesystem::path& out) {
-  const auto json = nlohmann::json::parse(tiler::read_whole_file(out / "terrane.json"));
+void describe_levels(const nlohmann::json& json) {
   const auto& dem = json.at("dem");
-  print_row("output", out.string());
   print_row("written by", json.at("generator").get<std::string>());
   print_row("DEM", fmt::format(
                        "{} x {} samples, {} with data, {:.2f} to {:.2f} m",
@@ -43,6 +42,32 @@ void describe_output(const std::filesystem::path& out) {
                level.at("tiles").get<std::int64_t>(), level.at("triangles").get<std::int64_t>(),
                level.at("bytes").get<double>() / 1e6);
   }
+}
+
+/// terrane.json of a folder or an archive; a damaged one is the input's fault.
+void describe_summary(const std::string& text, const std::filesystem::path& out) {
+  try {
+    describe_levels(nlohmann::json::parse(text));
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{}: its terrane.json is damaged ({}). Run 'terrane build' again",
+                                 out.string(), error.what()));
+  }
+}
+
+void describe_folder(const std::filesystem::path& out) {
+  print_row("output", out.string());
+  describe_summary(tiler::read_whole_file(out / "terrane.json"), out);
+}
+
+void describe_archive(const std::filesystem::path& file) {
+  const auto archive = archive::open_archive(file);
+  const archive::ArchiveFacts facts = archive->facts();
+  print_row("archive", file.string());
+  print_row("format", facts.format);
+  print_row("size", fmt::format("{:.2f} MB, {} files, {} different contents",
+                                static_cast<double>(archive->file().bytes()) / 1e6, facts.files,
+                                facts.contents));
+  if (const auto summary = archive->read("terrane.json")) describe_summary(*summary, file);
 }
 
 void describe_dem(const InfoCommand& command, const CommonOptions& common) {
@@ -78,8 +103,11 @@ void describe_dem(const InfoCommand& command, const CommonOptions& common) {
 
 void run(const InfoCommand& command, const CommonOptions& common) {
   const std::filesystem::path first = command.dem.dem.front();
-  if (command.dem.dem.size() == 1 && std::filesystem::exists(first / "terrane.json")) {
-    describe_output(first);
+  const bool is_alone = command.dem.dem.size() == 1;
+  if (is_alone && std::filesystem::exists(first / "terrane.json")) {
+    describe_folder(first);
+  } else if (is_alone && archive::is_archive_name(first)) {
+    describe_archive(first);
   } else {
     describe_dem(command, common);
   }
@@ -92,7 +120,7 @@ void add_info_command(CLI::App& app, const CommonOptions& common) {
   CLI::App* info = app.add_subcommand("info", "Describe a DEM, or what was built from one");
   add_dem_options(*info, command->dem)
       ->required()
-      ->description("DEM, several that make a mosaic, or an output folder");
+      ->description("DEM, several that make a mosaic, an output folder, or its archive");
   info->callback([command, &common] { run(*command, common); });
 }
 

@@ -27,6 +27,8 @@ void describe(CLI::App& app, terrane::cli::CommonOptions& common) {
   terrane::cli::add_levels_command(app, common);
   terrane::cli::add_verify_command(app, common);
   terrane::cli::add_serve_command(app, common);
+  terrane::cli::add_pack_command(app, common);
+  terrane::cli::add_unpack_command(app, common);
   terrane::cli::add_volume_command(app, common);
 }
 

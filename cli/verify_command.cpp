@@ -8,6 +8,7 @@
 #include "cli/build_settings.h"
 #include "cli/commands.h"
 #include "cli/terminal_progress.h"
+#include "cli/unpacked_output.h"
 #include "core/errors.h"
 #include "ingest/scan.h"
 #include "tiler/verify/verify.h"
@@ -42,17 +43,23 @@ void check_same_dem(const std::filesystem::path& out, const ingest::Dem& dem, Pr
                   out.string(), dem.name()));
 }
 
-void run(const VerifyCommand& command, const CommonOptions& common) {
-  check_finished(command.out);
+verify::VerifyReport verify_folder(const std::filesystem::path& out, const VerifyCommand& command,
+                                   Progress& progress) {
+  check_finished(out);
   BuildSettings settings;
-  read_settings(command.out / "build.toml", settings);
+  read_settings(out / "build.toml", settings);
   if (!command.dem.empty()) settings.dem = command.dem;
-  const auto progress = make_progress(common.quiet);
-  const auto dem = ingest::open_dem(settings.dem, settings.ingest, *progress);
-  check_same_dem(command.out, *dem, *progress);
+  const auto dem = ingest::open_dem(settings.dem, settings.ingest, progress);
+  check_same_dem(out, *dem, progress);
+  return verify::verify(out, dem->heights(), dem->place(), {.jobs = command.jobs}, progress);
+}
 
-  const verify::VerifyReport report =
-      verify::verify(command.out, dem->heights(), dem->place(), {.jobs = command.jobs}, *progress);
+void run(const VerifyCommand& command, const CommonOptions& common) {
+  const auto progress = make_progress(common.quiet);
+  verify::VerifyReport report;
+  with_output_folder(command.out, *progress, [&](const std::filesystem::path& folder) {
+    report = verify_folder(folder, command, *progress);
+  });
   if (!command.json.empty()) tiler::write_whole_file(command.json, to_json(report));
   fmt::print("{}", to_text(report));
   if (!report.holds()) throw AnswerIsNo();
@@ -64,7 +71,8 @@ void add_verify_command(CLI::App& app, const CommonOptions& common) {
   auto command = std::make_shared<VerifyCommand>();
   CLI::App* verify = app.add_subcommand(
       "verify", "Check tiles against their DEM: error bound, folds, seams, blends, boxes");
-  verify->add_option("out", command->out, "Folder that terrane build wrote")->required();
+  verify->add_option("out", command->out, "Folder that terrane build wrote, or its archive")
+      ->required();
   verify->add_option("--dem", command->dem, "DEM to check against [the one it was built from]");
   verify->add_option("--json", command->json, "File to write the whole report to");
   verify->add_option("--jobs", command->jobs, "Threads; 0: one per core")->capture_default_str();

@@ -19,8 +19,9 @@ MAY_INCLUDE = {
     "model": {"core", "ingest", "hierarchy"},
     "tiler": {"core", "hierarchy"},
     "tiler/verify": {"core"},  # the judge shares nothing with the builder
-    "viewer": {"core", "tiler"},
-    "cli": {"core", "ingest", "hierarchy", "model", "tiler", "tiler/verify", "viewer"},
+    "archive": {"core"},
+    "viewer": {"core", "tiler", "archive"},
+    "cli": {"core", "archive", "ingest", "hierarchy", "model", "tiler", "tiler/verify", "viewer"},
 }
 SOURCES = ("*.h", "*.cpp")
 OTHER_CODE = ("*.ts", "*.mjs", "*.py", "*.cmake", "CMakeLists.txt")
