@@ -29,7 +29,7 @@ bool tile_and_verify(const fs::path& out) {
 int main(int, char** arguments) {
   try {
     if (!tile_and_verify(arguments[1])) return 1;
-    const terrane::viewer::Server server({.folder = arguments[1], .port = 0});
+    const terrane::viewer::Server server({.data = {arguments[1]}, .port = 0});
     std::printf("would be served at %s\n", server.url().c_str());
     return 0;
   } catch (const terrane::Error& error) {

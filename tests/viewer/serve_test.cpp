@@ -28,7 +28,7 @@ using testing::TemporaryFolder;
 class RunningServer {
  public:
   explicit RunningServer(const fs::path& folder)
-      : server_({.folder = folder, .port = 0}), thread_([this] { server_.run(); }) {}
+      : server_({.data = {folder}, .port = 0}), thread_([this] { server_.run(); }) {}
   ~RunningServer() {
     server_.stop();
     thread_.join();
@@ -136,7 +136,9 @@ TEST_F(Serve, AnswersNotModifiedToTheTagItGave) {
       EXPECT_EQ(again.status, 304) << tags;
       EXPECT_EQ(again.body, "");
       EXPECT_EQ(again.headers["etag"], tag);
-      EXPECT_EQ(again.headers.count("content-length"), 0u);
+      // RFC 9110, section 8.6: none, or that of the 200
+      EXPECT_EQ(again.headers["content-length"],
+                get("/tileset.json", encoding).headers["content-length"]);
     }
   }
 }
@@ -274,12 +276,14 @@ TEST_F(Serve, TellsABrowserThatEveryOriginMayAsk) {
 TEST_F(Serve, SurvivesNonsense) {
   for (const std::string& request :
        {std::string("nonsense\r\n\r\n"), std::string("GET\r\n\r\n"),
-        std::string("GET / HTTP/9.9\r\n\r\n"), std::string("\r\n\r\n"),
+        std::string("GET / HTTP/9.9\r\n\r\n"), std::string("\x16\x03\x01\r\n\r\n"),
         "GET /" + std::string(20'000, 'a') + " HTTP/1.1\r\nConnection: close\r\n\r\n",
         "GET /" + std::string(5'000, '/') + " HTTP/1.1\r\nConnection: close\r\n\r\n",
         "GET / HTTP/1.1\r\nX: " + std::string(20'000, 'a') + "\r\nConnection: close\r\n\r\n"}) {
     const int status = testing::status_of_raw(server_.port(), request);
-    EXPECT_TRUE(status >= 400 && status < 500) << status << ": " << request.substr(0, 20);
+    const bool is_refused = (status >= 400 && status < 500) || status == 505;
+    const bool is_hung_up_on = status == 0;
+    EXPECT_TRUE(is_refused || is_hung_up_on) << status << ": " << request.substr(0, 20);
   }
   EXPECT_EQ(get("/letters.glb").status, 200);
 }
@@ -324,8 +328,8 @@ TEST_F(Serve, AnswersManyClientsAtOnce) {
 
 TEST(Server, TakesTheNextPortWhereOneIsTaken) {
   const TemporaryFolder folder;
-  const Server first({.folder = folder.path(), .port = 0});
-  const Server second({.folder = folder.path(), .port = first.port()});
+  const Server first({.data = {folder.path()}, .port = 0});
+  const Server second({.data = {folder.path()}, .port = first.port()});
   EXPECT_GT(second.port(), first.port());
   EXPECT_LE(second.port(), first.port() + 50);
   EXPECT_EQ(second.url(), "http://127.0.0.1:" + std::to_string(second.port()) + "/");
@@ -333,9 +337,9 @@ TEST(Server, TakesTheNextPortWhereOneIsTaken) {
 
 TEST(Server, NamesThePortThatIsTaken) {
   const TemporaryFolder folder;
-  const Server first({.folder = folder.path(), .port = 0});
+  const Server first({.data = {folder.path()}, .port = 0});
   try {
-    const Server second({.folder = folder.path(), .port = first.port(), .next_free_port = false});
+    const Server second({.data = {folder.path()}, .port = first.port(), .next_free_port = false});
     FAIL() << "two servers on one port";
   } catch (const OutputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("127.0.0.1:" + std::to_string(first.port())));
@@ -346,25 +350,25 @@ TEST(Server, NamesThePortThatIsTaken) {
 TEST(Server, RefusesAddressesOfOtherMachines) {
   const TemporaryFolder folder;
   // 192.0.2.0/24 is for documentation (RFC 5737): never an address of this machine
-  EXPECT_THROW(Server({.folder = folder.path(), .bind = "192.0.2.1", .port = 0}), OutputError);
+  EXPECT_THROW(Server({.data = {folder.path()}, .bind = "192.0.2.1", .port = 0}), OutputError);
 }
 
 TEST(Server, RefusesWhatIsNoFolder) {
   const TemporaryFolder folder;
   folder.write("file", "");
-  EXPECT_THROW(Server({.folder = folder.path() / "none", .port = 0}), InputError);
-  EXPECT_THROW(Server({.folder = folder.path() / "file", .port = 0}), InputError);
+  EXPECT_THROW(Server({.data = {folder.path() / "none"}, .port = 0}), InputError);
+  EXPECT_THROW(Server({.data = {folder.path() / "file"}, .port = 0}), InputError);
 }
 
 TEST(Server, RefusesWhatIsNoPort) {
   const TemporaryFolder folder;
-  EXPECT_THROW(Server({.folder = folder.path(), .port = -1}), ConfigError);
-  EXPECT_THROW(Server({.folder = folder.path(), .port = 65'536}), ConfigError);
+  EXPECT_THROW(Server({.data = {folder.path()}, .port = -1}), ConfigError);
+  EXPECT_THROW(Server({.data = {folder.path()}, .port = 65'536}), ConfigError);
 }
 
 TEST(Server, StopsEvenBeforeItRuns) {
   const TemporaryFolder folder;
-  Server server({.folder = folder.path(), .port = 0});
+  Server server({.data = {folder.path()}, .port = 0});
   server.stop();
   auto run = std::async(std::launch::async, [&server] { server.run(); });
   EXPECT_EQ(run.wait_for(std::chrono::seconds(10)), std::future_status::ready);
@@ -373,7 +377,7 @@ TEST(Server, StopsEvenBeforeItRuns) {
 TEST(Server, StopsAtWhateverMomentItIsTold) {
   const TemporaryFolder folder;
   for (int i = 0; i < 30; ++i) {
-    Server server({.folder = folder.path(), .port = 0});
+    Server server({.data = {folder.path()}, .port = 0});
     auto run = std::async(std::launch::async, [&server] { server.run(); });
     std::this_thread::sleep_for(std::chrono::microseconds(i * 20));
     server.stop();
@@ -389,7 +393,7 @@ TEST(Server, GivesItsPortBack) {
     port = server.port();
     EXPECT_EQ(request_raw(port, "GET", "/none").status, 404);
   }
-  const Server next({.folder = folder.path(), .port = port, .next_free_port = false});
+  const Server next({.data = {folder.path()}, .port = port, .next_free_port = false});
   EXPECT_EQ(next.port(), port);
 }
 

@@ -10,20 +10,6 @@ namespace {
 constexpr int kLevel = 4;                    // the viewer: half the time of 6, 5 % more bytes
 constexpr int kGzipWindow = MAX_WBITS + 16;  // zlib's way to ask for the gzip format
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-// "q=0", "q=0.0", "q=0.000": not wanted.
-bool is_weight_zero(std::string_view parameters) {
-  const std::size_t weight = parameters.find("q=");
-  if (weight == std::string_view::npos) return false;
-  const std::string_view value = parameters.substr(weight + 2);
-  return value.starts_with('0') && value.find_first_of("123456789") == std::string_view::npos;
-}
-
 }  // namespace
 
 std::string gzip(std::string_view content) {
@@ -41,19 +27,6 @@ std::string gzip(std::string_view content) {
   compressed.resize(stream.total_out);
   deflateEnd(&stream);
   return compressed;
-}
-
-bool accepts_gzip(std::string_view accept_encoding) {
-  while (!accept_encoding.empty()) {
-    const std::size_t comma = std::min(accept_encoding.find(','), accept_encoding.size());
-    const std::string_view item = accept_encoding.substr(0, comma);
-    accept_encoding.remove_prefix(std::min(comma + 1, accept_encoding.size()));
-    const std::size_t semicolon = std::min(item.find(';'), item.size());
-    if (trimmed(item.substr(0, semicolon)) == "gzip") {
-      return !is_weight_zero(item.substr(semicolon));
-    }
-  }
-  return false;
 }
 
 }  // namespace terrane::viewer

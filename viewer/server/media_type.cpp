@@ -8,22 +8,50 @@
 namespace terrane::viewer {
 namespace {
 
+constexpr MediaType text(std::string_view name) {
+  return {.name = name, .is_compressible = true, .varies = true};
+}
+
+constexpr MediaType json(std::string_view name) {
+  return {.name = name, .is_compressible = true, .varies = true, .may_lie_gzipped = true};
+}
+
 // Tiles are compressed already (meshopt): gzip on the way would cost more time than it saves.
+constexpr MediaType tile(std::string_view name) {
+  return {.name = name, .varies = true, .may_lie_gzipped = true, .is_tile = true};
+}
+
+constexpr MediaType picture(std::string_view name) { return {.name = name, .is_tile = true}; }
+
+constexpr MediaType archive(std::string_view name) { return {.name = name}; }
+
+using Known = std::pair<std::string_view, MediaType>;
 constexpr std::array kMediaTypes = {
-    std::pair{std::string_view(".html"), MediaType{"text/html; charset=utf-8", true}},
-    std::pair{std::string_view(".js"), MediaType{"text/javascript; charset=utf-8", true}},
-    std::pair{std::string_view(".css"), MediaType{"text/css; charset=utf-8", true}},
-    std::pair{std::string_view(".json"), MediaType{"application/json", true}},
-    std::pair{std::string_view(".glb"), MediaType{"model/gltf-binary", false}},
-    std::pair{std::string_view(".gltf"), MediaType{"model/gltf+json", true}},
-    std::pair{std::string_view(".terrain"), MediaType{"application/vnd.quantized-mesh", false}},
-    std::pair{std::string_view(".png"), MediaType{"image/png", false}},
-    std::pair{std::string_view(".jpg"), MediaType{"image/jpeg", false}},
-    std::pair{std::string_view(".svg"), MediaType{"image/svg+xml", true}},
-    std::pair{std::string_view(".ico"), MediaType{"image/x-icon", false}},
-    std::pair{std::string_view(".wasm"), MediaType{"application/wasm", true}},
-    std::pair{std::string_view(".toml"), MediaType{"text/plain; charset=utf-8", true}},
-    std::pair{std::string_view(".txt"), MediaType{"text/plain; charset=utf-8", true}},
+    Known{".html", text("text/html; charset=utf-8")},
+    Known{".js", text("text/javascript; charset=utf-8")},
+    Known{".mjs", text("text/javascript; charset=utf-8")},
+    Known{".css", text("text/css; charset=utf-8")},
+    Known{".map", text("application/json")},
+    Known{".json", json("application/json")},
+    Known{".geojson", json("application/geo+json")},
+    Known{".glb", tile("model/gltf-binary")},
+    Known{".gltf", json("model/gltf+json")},
+    Known{".bin", tile("application/octet-stream")},
+    Known{".subtree", tile("application/octet-stream")},
+    Known{".b3dm", tile("application/octet-stream")},
+    Known{".terrain", tile("application/vnd.quantized-mesh")},
+    Known{".png", picture("image/png")},
+    Known{".jpg", picture("image/jpeg")},
+    Known{".jpeg", picture("image/jpeg")},
+    Known{".webp", picture("image/webp")},
+    Known{".svg", text("image/svg+xml")},
+    Known{".ico", picture("image/x-icon")},
+    Known{".wasm", text("application/wasm")},
+    Known{".toml", text("text/plain; charset=utf-8")},
+    Known{".txt", text("text/plain; charset=utf-8")},
+    Known{".xml", text("application/xml")},
+    Known{".pmtiles", archive("application/vnd.pmtiles")},
+    Known{".3tz", archive("application/vnd.maxar.archive.3tz+zip")},
 };
 
 char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
@@ -33,9 +61,9 @@ char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' 
 MediaType media_type_of(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), to_lower);
-  const auto* known = std::find_if(kMediaTypes.begin(), kMediaTypes.end(),
-                                   [&](const auto& type) { return type.first == extension; });
-  return known == kMediaTypes.end() ? MediaType{"application/octet-stream", false} : known->second;
+  const auto known = std::find_if(kMediaTypes.begin(), kMediaTypes.end(),
+                                  [&](const auto& type) { return type.first == extension; });
+  return known == kMediaTypes.end() ? MediaType{"application/octet-stream"} : known->second;
 }
 
 }  // namespace terrane::viewer

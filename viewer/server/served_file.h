@@ -21,6 +21,7 @@ class OpenFile {
 
   std::uint64_t bytes() const { return bytes_; }
   std::int64_t modified_ns() const { return modified_ns_; }
+  int descriptor() const { return descriptor_; }
 
   /// Reads at most `length` bytes from `offset`; an empty string at the end or on failure.
   /// Thread-safe.

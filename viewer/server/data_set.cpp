@@ -1,0 +1,121 @@
+#include "viewer/server/data_set.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+
+#include "archive/archive.h"
+#include "core/errors.h"
+#include "viewer/server/viewer_files.h"
+
+namespace terrane::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string name_of(const fs::path& path, bool is_archive) {
+  const fs::path last = (fs::absolute(path) / "").lexically_normal().parent_path().filename();
+  const std::string name = is_archive ? last.stem().string() : last.string();
+  return name.empty() ? "data" : name;
+}
+
+/// The viewer of this binary, for data sets without one.
+std::optional<DataSetFile> find_viewer_file(std::string_view path) {
+  const std::string_view name = path == "/" ? "index.html" : path.substr(1);
+  const auto files = viewer_files();
+  const auto found = std::ranges::find(files, name, &ViewerFile::path);
+  if (found == files.end()) return std::nullopt;
+  static const std::int64_t started_ns = 1;  // part of the program: as old as anything
+  return DataSetFile{.name = std::string(name),
+                     .content = FileContent(std::string(found->content)),
+                     .tag = fmt::format("viewer-{:x}-{:x}", found->content.size(),
+                                        std::hash<std::string_view>()(found->content)),
+                     .modified_ns = started_ns};
+}
+
+class FolderDataSet final : public DataSet {
+ public:
+  explicit FolderDataSet(const fs::path& folder) : root_(fs::canonical(folder)) {
+    name_ = name_of(folder, /*is_archive=*/false);
+  }
+
+  std::optional<DataSetFile> find(std::string_view path) const override {
+    auto file = open_served_file(root_, path);
+    if (!file) return has_tileset() ? find_viewer_file(path) : std::nullopt;
+    const OpenFile& content = *file->content;
+    return DataSetFile{.name = file->path.lexically_relative(root_).generic_string(),
+                       .content = {file->content, {0, content.bytes()}},
+                       .tag = fmt::format("{:x}-{:x}", content.modified_ns(), content.bytes()),
+                       .modified_ns = content.modified_ns()};
+  }
+
+ private:
+  bool has_tileset() const { return fs::exists(root_ / "tileset.json"); }
+
+  fs::path root_;
+};
+
+class ArchiveDataSet final : public DataSet {
+ public:
+  explicit ArchiveDataSet(const fs::path& path)
+      : archive_(archive::open_archive(path)),
+        file_(std::make_shared<const OpenFile>(::dup(archive_->file().descriptor()),
+                                               archive_->file().bytes(),
+                                               archive_->file().modified_ns())) {
+    name_ = name_of(path, /*is_archive=*/true);
+    archive_name_ = path.filename().string();
+  }
+
+  std::optional<DataSetFile> find(std::string_view path) const override try {
+    if (!path.starts_with('/')) return std::nullopt;
+    const std::string_view name = path.substr(1);
+    if (name == archive_name_) return archive_itself();
+    const auto content = archive_->find(name);
+    if (content) return file_of(std::string(name), *content);
+    return archive_->find("tileset.json") ? find_viewer_file(path) : std::nullopt;
+  } catch (const InputError&) {
+    return std::nullopt;  // damaged there: the others are served
+  }
+
+ private:
+  DataSetFile archive_itself() const {
+    return {.name = archive_name_,
+            .content = {file_, {0, file_->bytes()}},
+            .tag = fmt::format("{:x}-{:x}", file_->modified_ns(), file_->bytes()),
+            .modified_ns = file_->modified_ns()};
+  }
+
+  DataSetFile file_of(std::string name, const archive::Content& content) const {
+    DataSetFile file{.name = std::move(name), .modified_ns = file_->modified_ns()};
+    const auto* stored = std::get_if<archive::StoredBytes>(&content);
+    if (stored != nullptr && stored->coding != archive::Coding::kDeflate) {
+      file.content = {file_, {stored->offset, stored->length}};
+      file.is_gzipped = stored->coding == archive::Coding::kGzip;
+      file.tag =
+          fmt::format("{:x}-{:x}-{:x}", file_->modified_ns(), stored->offset, stored->length);
+      return file;
+    }
+    file.content = FileContent(archive_->read(file.name).value());
+    file.tag = fmt::format("{:x}-{:x}-{:x}", file_->modified_ns(),
+                           std::hash<std::string_view>()(file.name), file.content.bytes());
+    return file;
+  }
+
+  std::unique_ptr<archive::Archive> archive_;
+  std::shared_ptr<const OpenFile> file_;
+};
+
+}  // namespace
+
+std::unique_ptr<DataSet> open_data_set(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return std::make_unique<FolderDataSet>(path);
+  if (fs::is_regular_file(path, error)) return std::make_unique<ArchiveDataSet>(path);
+  throw InputError(fmt::format(
+      "{}: no such folder or archive. Give what 'terrane build' or 'terrane pack' wrote",
+      path.string()));
+}
+
+}  // namespace terrane::viewer
