@@ -12,6 +12,7 @@ struct CommonOptions {
 // Each adds a subcommand that runs as soon as the command line is read, and throws terrane::Error.
 void add_build_command(CLI::App& app, const CommonOptions& common);
 void add_simplify_command(CLI::App& app, const CommonOptions& common);
+void add_export_command(CLI::App& app, const CommonOptions& common);
 void add_info_command(CLI::App& app, const CommonOptions& common);
 void add_levels_command(CLI::App& app, const CommonOptions& common);
 void add_pack_command(CLI::App& app, const CommonOptions& common);

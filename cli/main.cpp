@@ -24,6 +24,7 @@ void describe(CLI::App& app, terrane::cli::CommonOptions& common) {
   terrane::cli::add_build_command(app, common);
   terrane::cli::add_simplify_command(app, common);
   terrane::cli::add_info_command(app, common);
+  terrane::cli::add_export_command(app, common);
   terrane::cli::add_levels_command(app, common);
   terrane::cli::add_verify_command(app, common);
   terrane::cli::add_serve_command(app, common);

@@ -20,8 +20,10 @@ MAY_INCLUDE = {
     "tiler": {"core", "hierarchy"},
     "tiler/verify": {"core"},  # the judge shares nothing with the builder
     "archive": {"core"},
+    "tiler/welded": {"core", "tiler/verify"},  # reads tiles, builds none
     "viewer": {"core", "tiler", "archive"},
-    "cli": {"core", "archive", "ingest", "hierarchy", "model", "tiler", "tiler/verify", "viewer"},
+    "cli": {"core", "archive", "ingest", "hierarchy", "model", "tiler", "tiler/verify",
+            "tiler/welded", "viewer"},
 }
 SOURCES = ("*.h", "*.cpp")
 OTHER_CODE = ("*.ts", "*.mjs", "*.py", "*.cmake", "CMakeLists.txt")

@@ -17,7 +17,8 @@ class Usage(unittest.TestCase):
         self.assertRegex(printed, r"^terrane \d+\.\d+\.\d+\n$")
 
     def test_help_of_every_subcommand_tells_units_and_defaults(self):
-        for command in ("build", "simplify", "levels", "info", "verify", "serve",
+        for command in ("build", "simplify", "levels", "info", "verify", "serve", "pack", "unpack",
+                        "export",
                         "volume"):
             status, printed, _ = terrane(command, "--help")
             self.assertEqual(status, 0)

@@ -84,6 +84,14 @@ printf '{listed}'
         self.assertTrue(any("install" in line and "libcgal-dev" in line
                             for line in self.recorded()))
 
+    def test_installs_servers_only_when_asked(self):
+        self.packages_installed(but=["nginx-light", "wrk"])
+        self.run_script("setup")
+        self.assertEqual(self.recorded(), [])
+        self.run_script("setup", "--servers")
+        self.assertTrue(any("install" in line and "nginx-light wrk" in line
+                            for line in self.recorded()))
+
     def test_says_which_step_failed(self):
         self.packages_installed(but=["ninja-build"])
         self.stand_in("apt-get", "#!/bin/sh\nexit 100\n")

@@ -24,5 +24,11 @@ TEST(MediaTypeOf, TakesAnUnknownExtensionForPlainBytes) {
   EXPECT_FALSE(media_type_of("a.exe").is_compressible);
 }
 
+TEST(MediaTypeOf, KnowsArchivesAndNeverCodesThem) {
+  EXPECT_EQ(media_type_of("a.pmtiles").name, "application/vnd.pmtiles");
+  EXPECT_FALSE(media_type_of("a.pmtiles").varies);
+  EXPECT_FALSE(media_type_of("a.3tz").varies);
+}
+
 }  // namespace
 }  // namespace terrane::viewer

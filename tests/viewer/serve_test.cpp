@@ -13,6 +13,7 @@
 #include "core/errors.h"
 #include "tests/viewer/gunzip.h"
 #include "tests/viewer/raw_http.h"
+#include "tests/viewer/running_server.h"
 #include "tests/viewer/temporary_folder.h"
 
 namespace terrane::viewer {
@@ -22,24 +23,8 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using testing::RawAnswer;
 using testing::request_raw;
+using testing::RunningServer;
 using testing::TemporaryFolder;
-
-// A server of one folder, running in a thread of its own.
-class RunningServer {
- public:
-  explicit RunningServer(const fs::path& folder)
-      : server_({.data = {folder}, .port = 0}), thread_([this] { server_.run(); }) {}
-  ~RunningServer() {
-    server_.stop();
-    thread_.join();
-  }
-
-  int port() const { return server_.port(); }
-
- private:
-  Server server_;
-  std::thread thread_;
-};
 
 std::string long_json() {
   std::string json = "[";
@@ -67,7 +52,7 @@ class Serve : public ::testing::Test {
 
   TemporaryFolder outside_;
   RunningServer server_{
-      (fs::create_directories(outside_.path() / "served"), outside_.path() / "served")};
+      {.data = {(fs::create_directories(outside_.path() / "served"), outside_.path() / "served")}}};
 };
 
 TEST_F(Serve, SendsAFileWithItsTypeAndForEveryOrigin) {
@@ -389,7 +374,7 @@ TEST(Server, GivesItsPortBack) {
   const TemporaryFolder folder;
   int port = 0;
   {
-    const RunningServer server(folder.path());
+    const RunningServer server({.data = {folder.path()}});
     port = server.port();
     EXPECT_EQ(request_raw(port, "GET", "/none").status, 404);
   }
