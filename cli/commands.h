@@ -17,6 +17,8 @@ void add_info_command(CLI::App& app, const CommonOptions& common);
 void add_levels_command(CLI::App& app, const CommonOptions& common);
 void add_pack_command(CLI::App& app, const CommonOptions& common);
 void add_unpack_command(CLI::App& app, const CommonOptions& common);
+void add_merge_tree_command(CLI::App& app, const CommonOptions& common);
+void add_view_cut_command(CLI::App& app, const CommonOptions& common);
 void add_verify_command(CLI::App& app, const CommonOptions& common);
 void add_serve_command(CLI::App& app, const CommonOptions& common);
 void add_volume_command(CLI::App& app, const CommonOptions& common);

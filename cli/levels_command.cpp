@@ -8,21 +8,16 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/dem_options.h"
 #include "cli/level_export.h"
 #include "cli/level_settings.h"
+#include "cli/surface_input.h"
 #include "cli/terminal_progress.h"
 #include "core/errors.h"
 #include "hierarchy/levels/build_levels.h"
-#include "hierarchy/levels/check_surface.h"
-#include "hierarchy/levels/grid_surface.h"
 #include "hierarchy/levels/level_error.h"
 #include "hierarchy/levels/levels_file.h"
-#include "hierarchy/levels/read_surface.h"
 #include "hierarchy/levels/swap_cycles.h"
-#include "ingest/scan.h"
 #include "tiler/whole_file.h"
-#include "tiler/world_frame.h"
 
 namespace terrane::cli {
 namespace {
@@ -30,15 +25,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct LevelsCommand {
-  std::string input;
+  SurfaceInput surface;
   std::filesystem::path out;
   double share = 0.03;
   std::string weights = "st-helens", stop = "level=30";
   bool is_published = false, swaps_cycles = false;
   std::filesystem::path report;
   int jobs = 0;
-  std::optional<int> band;
-  std::optional<std::string> nodata, vertical_unit, crs;
   ExportOptions exports;
 };
 
@@ -48,38 +41,12 @@ struct TimedLevel {
   double seconds = 0;
 };
 
-/// Distance of neighbouring samples at the centre of the DEM, along a row and along a column.
-std::pair<double, double> spacing_m(const ingest::Dem& dem) {
-  const GridShape shape = dem.heights().shape();
-  const tiler::WorldFrame world(dem.place(), shape);
-  const double column = static_cast<double>(shape.columns / 2 - 1);
-  const double row = static_cast<double>(shape.rows / 2 - 1);
-  const std::array<GridPosition, 3> at{{{column, row}, {column + 1, row}, {column, row + 1}}};
-  const auto plumbs = world.plumbs(at);
-  return {(plumbs[1].base - plumbs[0].base).norm(), (plumbs[2].base - plumbs[0].base).norm()};
-}
-
-hierarchy::SurfaceMesh surface_of_dem(const LevelsCommand& command, Progress& progress) {
-  ingest::OpenOptions options{.band = command.band, .nodata = command.nodata};
-  if (command.crs) options.crs = *command.crs;
-  if (command.vertical_unit) options.vertical_unit = vertical_unit_of(*command.vertical_unit);
-  const auto dem = ingest::open_dem({command.input}, options, progress);
-  ingest::scan_heights(*dem, progress);
-  const GridShape shape = dem->heights().shape();
-  const auto [column_m, row_m] = spacing_m(*dem);
-  return hierarchy::surface_of(dem->heights().read({0, 0, shape.columns, shape.rows}), column_m,
-                               row_m);
-}
-
-hierarchy::SurfaceMesh read_input(const LevelsCommand& command, Progress& progress) {
-  hierarchy::SurfaceMesh mesh = hierarchy::is_surface_file(command.input)
-                                    ? hierarchy::read_surface(command.input)
-                                    : surface_of_dem(command, progress);
-  mesh = hierarchy::check_surface(std::move(mesh), command.input, progress);
+hierarchy::SurfaceMesh read_mesh(const LevelsCommand& command, Progress& progress) {
+  hierarchy::SurfaceMesh mesh = read_input(command.surface, progress);
   if (command.swaps_cycles) {
     const hierarchy::CycleSwaps swaps = hierarchy::swap_cycles(mesh);
-    progress.note(fmt::format("{}: {} of {} cycles removed by swapping an edge", command.input,
-                              swaps.removed, swaps.found));
+    progress.note(fmt::format("{}: {} of {} cycles removed by swapping an edge",
+                              command.surface.input, swaps.removed, swaps.found));
   }
   return mesh;
 }
@@ -146,7 +113,7 @@ void write_report(const LevelsCommand& command, const hierarchy::LevelSequence& 
   }
   tiler::write_whole_file(
       command.report,
-      nlohmann::ordered_json{{"input", command.input}, {"levels", array}}.dump(1) + "\n");
+      nlohmann::ordered_json{{"input", command.surface.input}, {"levels", array}}.dump(1) + "\n");
 }
 
 hierarchy::LevelSequence build(const LevelsCommand& command, const hierarchy::SurfaceMesh& mesh,
@@ -175,17 +142,17 @@ hierarchy::LevelSequence build(const LevelsCommand& command, const hierarchy::Su
 
 void run(const LevelsCommand& command, const CommonOptions& common) {
   const auto progress = make_progress(common.quiet);
-  if (is_levels_file(command.input)) {
-    export_levels(command.input, command.exports, command.out);
+  if (is_levels_file(command.surface.input)) {
+    export_levels(command.surface.input, command.exports, command.out);
     return;
   }
   if (is_given(command.exports)) {
     throw ConfigError(fmt::format(
         "{}: --extract and --every read a file of levels. Build one first: terrane levels {} -o "
         "NAME.levels",
-        command.input, command.input));
+        command.surface.input, command.surface.input));
   }
-  const hierarchy::SurfaceMesh mesh = read_input(command, *progress);
+  const hierarchy::SurfaceMesh mesh = read_mesh(command, *progress);
   std::vector<TimedLevel> levels;
   const hierarchy::LevelSequence sequence = build(command, mesh, levels, *progress);
   const std::string bytes = hierarchy::encode_levels(sequence);
@@ -215,7 +182,7 @@ void add_levels_command(CLI::App& app, const CommonOptions& common) {
       "levels",
       "Build the published hierarchy of a triangle mesh or a DEM, or take levels from it");
   levels
-      ->add_option("input", command->input,
+      ->add_option("input", command->surface.input,
                    "Mesh (OBJ, PLY, OFF, STL), DEM, or a file NAME.levels written before")
       ->required();
   levels->add_option("-o,--out", command->out, "File of levels to write, or what was extracted")
@@ -241,11 +208,7 @@ void add_levels_command(CLI::App& app, const CommonOptions& common) {
   levels->add_option("--report", command->report,
                      "JSON file to write: triangles, rejections, errors and seconds of each level");
   levels->add_option("--jobs", command->jobs, "Threads; 0: one per core")->capture_default_str();
-  levels->add_option("--band", command->band, "Of a DEM: band with the heights, from 1");
-  levels->add_option("--nodata", command->nodata, "Of a DEM: stored value of no data, or none");
-  levels->add_option("--vertical-unit", command->vertical_unit,
-                     "Of a DEM: metre, foot or us-survey-foot");
-  levels->add_option("--crs", command->crs, "Of a DEM: coordinate reference system");
+  add_surface_options(*levels, command->surface);
   add_export_options(*levels, command->exports);
   levels->callback([command, &common] { run(*command, common); });
 }

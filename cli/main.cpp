@@ -26,6 +26,8 @@ void describe(CLI::App& app, terrane::cli::CommonOptions& common) {
   terrane::cli::add_info_command(app, common);
   terrane::cli::add_export_command(app, common);
   terrane::cli::add_levels_command(app, common);
+  terrane::cli::add_merge_tree_command(app, common);
+  terrane::cli::add_view_cut_command(app, common);
   terrane::cli::add_verify_command(app, common);
   terrane::cli::add_serve_command(app, common);
   terrane::cli::add_pack_command(app, common);

@@ -28,7 +28,8 @@ void check(const MergeTreeOptions& options) {
 std::vector<Eigen::Vector3d> rounded(const SurfaceMesh& mesh, const PointLattice& lattice) {
   std::vector<Eigen::Vector3d> points;
   points.reserve(mesh.points.size());
-  for (const Eigen::Vector3d& p : mesh.points) points.push_back(lattice.round(p - lattice.origin()));
+  for (const Eigen::Vector3d& p : mesh.points)
+    points.push_back(lattice.round(p - lattice.origin()));
   return points;
 }
 
@@ -86,7 +87,8 @@ MergeTree build_merge_tree(const SurfaceMesh& finest, const MergeTreeOptions& op
   std::vector<Eigen::Vector3i> places;
   for (const Eigen::Vector3d& p : mesh.points) places.push_back(tree.lattice.steps(p));
 
-  EdgeCollapser collapser(std::move(mesh.points), mesh.triangles, tree.measure, options);
+  EdgeCollapser collapser(std::move(mesh.points), mesh.triangles, tree.lattice.step(), tree.measure,
+                          options);
   collapser.run();
   tree = grown(collapser, std::move(tree), places);
   measure_bounds(tree);

@@ -17,7 +17,7 @@ enum class CollapseOrder : std::uint8_t {
 
 /// What happened in one pass over the mesh.
 struct PassStatistics {
-  std::uint32_t level = 0;     ///< of the merges that it made; 1 is the first
+  std::uint32_t level = 0;  ///< of the merges that it made; 1 is the first
   std::uint32_t collapses = 0;
   std::uint32_t vertices = 0;  ///< left
 };
@@ -25,10 +25,10 @@ struct PassStatistics {
 struct MergeTreeOptions {
   CollapseOrder order = CollapseOrder::kError;
   Region region = Region::kRemovedEnd;
-  /// Share of the vertices that could go, cheapest first, that a pass looks at; in (0, 1]. Less
-  /// than 1 leaves the most expensive ones of each pass for later ones: more levels, fewer
-  /// triangles for an error.
-  double share = 1;
+  /// Share of the vertices (kLength: edges) that could go, cheapest first, that a pass looks at; in
+  /// (0, 1]. Less than 1 leaves the most expensive ones of each pass for later ones: more levels,
+  /// fewer triangles for an error. Published: 1.
+  double share = 0.5;
   std::uint32_t fewest_vertices = 8;  ///< the pass that comes to so many is the last
   /// Refuses collapses that make a triangle with 4 sqrt(3) area / (sum of squared sides) below
   /// this; 0 to 1.

@@ -55,9 +55,9 @@ class DisplayMesh {
   const MergeTree& tree_;
   std::vector<std::uint32_t> indices_;
   std::vector<float> positions_, normals_;
-  std::vector<std::uint32_t> shown_;          // id of each triangle of indices_
-  std::vector<std::uint32_t> triangle_at_;    // place in shown_, by id
-  std::vector<std::uint32_t> slot_;           // by vertex
+  std::vector<std::uint32_t> shown_;        // id of each triangle of indices_
+  std::vector<std::uint32_t> triangle_at_;  // place in shown_, by id
+  std::vector<std::uint32_t> slot_;         // by vertex
   std::vector<std::uint32_t> free_slots_;
   std::vector<std::uint32_t> changed_triangles_, changed_slots_;
   std::vector<std::uint32_t> scratch_;

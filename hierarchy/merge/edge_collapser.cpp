@@ -1,8 +1,8 @@
 #include "hierarchy/merge/edge_collapser.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <Eigen/Geometry>
 #include <limits>
 
 #include "hierarchy/merge/surface_normals.h"
@@ -15,30 +15,38 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 // a fan of more triangles makes every split at its hub expensive, and its neighbours wait for it
 constexpr std::uint32_t kLargestValence = 24;
 
+// samples of a row are on one line but for rounding: a triangle of three of them is a wall, and a
+// sample at its foot is as far from one side of it as the wall is high
+constexpr double kLeastAltitudeSteps = 16;
+
 double cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-Eigen::Vector3d area_vector(const TrianglePlaces& t) {
-  return (t[1] - t[0]).cross(t[2] - t[0]);
+Eigen::Vector3d area_vector(const TrianglePlaces& t) { return (t[1] - t[0]).cross(t[2] - t[0]); }
+
+double longest_side_in_plan(const TrianglePlaces& t) {
+  const auto side = [&](std::size_t a, std::size_t b) { return (t[b] - t[a]).head<2>().norm(); };
+  return std::max({side(0, 1), side(1, 2), side(2, 0)});
 }
 
 /// 1 for an equilateral triangle, 0 without area: eq. (3) of the paper.
 double quality(const TrianglePlaces& t) {
-  const double sides = (t[1] - t[0]).squaredNorm() + (t[2] - t[1]).squaredNorm() +
-                       (t[0] - t[2]).squaredNorm();
+  const double sides =
+      (t[1] - t[0]).squaredNorm() + (t[2] - t[1]).squaredNorm() + (t[0] - t[2]).squaredNorm();
   return 2 * std::sqrt(3.0) * area_vector(t).norm() / sides;
 }
 
 }  // namespace
 
 EdgeCollapser::EdgeCollapser(std::vector<Eigen::Vector3d> points,
-                             const std::vector<Corners>& triangles, ErrorMeasure measure,
-                             const MergeTreeOptions& options)
+                             const std::vector<Corners>& triangles, double step,
+                             ErrorMeasure measure, const MergeTreeOptions& options)
     : points_(std::move(points)),
       normals_(vertex_normals(points_, triangles)),
       mesh_(static_cast<std::uint32_t>(points_.size()), triangles),
       walker_(mesh_),
+      least_altitude_(kLeastAltitudeSteps * step),
       measure_(measure),
       options_(options),
       lists_(mesh_.vertex_count(), mesh_.triangle_count()),
@@ -81,8 +89,8 @@ std::uint32_t EdgeCollapser::pass(std::uint32_t level) {
     return a.cost != b.cost ? a.cost < b.cost : a.edge < b.edge;
   });
   // lengths change in regions alone that are taken, so sorting once per pass is the paper's heap
-  const auto looked_at = static_cast<std::size_t>(
-      std::ceil(options_.share * static_cast<double>(order.size())));
+  const auto looked_at =
+      static_cast<std::size_t>(std::ceil(options_.share * static_cast<double>(order.size())));
   std::uint32_t made = 0;
   for (std::size_t i = 0; i < looked_at; ++i) {
     if (live_vertices_ <= options_.fewest_vertices) break;
@@ -195,8 +203,8 @@ bool EdgeCollapser::is_allowed(HalfedgeId edge) {
   const VertexId gone = mesh_.start(edge), kept = mesh_.end(edge);
   if (mesh_.is_ghost(gone) || mesh_.is_ghost(kept) || mesh_.is_split(gone)) return false;
   if (mesh_.valence(gone) + mesh_.valence(kept) - 4 > kLargestValence) return false;
-  const bool is_border_edge = mesh_.is_ghost(mesh_.apex(edge)) ||
-                              mesh_.is_ghost(mesh_.apex(mesh_.opposite(edge)));
+  const bool is_border_edge =
+      mesh_.is_ghost(mesh_.apex(edge)) || mesh_.is_ghost(mesh_.apex(mesh_.opposite(edge)));
   if (!is_border_edge && mesh_.is_boundary(gone)) return false;
   return walker_.around_edge(edge, stencil_) == Collapsibility::kYes;
 }
@@ -205,13 +213,14 @@ bool EdgeCollapser::is_sound(std::size_t i) const {
   const TrianglePlaces& places = fan_[i];
   if (options_.smallest_quality > 0 && quality(places) < options_.smallest_quality) return false;
   // exact: differences of lattice places and their products fit a double
-  if (measure_ == ErrorMeasure::kVertical) return cross(places[0], places[1], places[2]) > 0;
+  if (measure_ == ErrorMeasure::kVertical) {
+    return cross(places[0], places[1], places[2]) > least_altitude_ * longest_side_in_plan(places);
+  }
   const Eigen::Vector3d normal = area_vector(places);
   const auto faces = [&](VertexId v) { return normal.dot(normals_[index(v)]) > 0; };
-  const auto at = static_cast<std::size_t>(
-      std::ranges::find(ring_triangles_, fan_triangles_[i]) - ring_triangles_.begin());
-  return normal.dot(star_area_) > 0 && faces(ring_[0]) && faces(ring_[at]) &&
-         faces(ring_[at + 1]);
+  const auto at = static_cast<std::size_t>(std::ranges::find(ring_triangles_, fan_triangles_[i]) -
+                                           ring_triangles_.begin());
+  return normal.dot(star_area_) > 0 && faces(ring_[0]) && faces(ring_[at]) && faces(ring_[at + 1]);
 }
 
 /// May the edge collapse, with an error below the limit?

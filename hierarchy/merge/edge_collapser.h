@@ -11,8 +11,8 @@ namespace terrane::hierarchy {
 
 /// An edge collapse that was made; vertices have the numbers of the full mesh.
 struct EdgeCollapse {
-  std::uint32_t removed = 0, kept = 0;      ///< c and p
-  std::array<std::uint32_t, 2> apexes{};    ///< as in Split; kOutside beyond the border
+  std::uint32_t removed = 0, kept = 0;    ///< c and p
+  std::array<std::uint32_t, 2> apexes{};  ///< as in Split; kOutside beyond the border
   std::uint32_t level = 1;
 };
 
@@ -20,8 +20,9 @@ struct EdgeCollapse {
 class EdgeCollapser {
  public:
   /// \param points  on a lattice, relative to its origin.
+  /// \param step    of the lattice.
   EdgeCollapser(std::vector<Eigen::Vector3d> points, const std::vector<Corners>& triangles,
-                ErrorMeasure measure, const MergeTreeOptions& options);
+                double step, ErrorMeasure measure, const MergeTreeOptions& options);
   EdgeCollapser(const EdgeCollapser&) = delete;  // walker_ holds on to mesh_
 
   /// Collapses what it can.
@@ -62,6 +63,7 @@ class EdgeCollapser {
   HalfedgeMesh mesh_;
   StencilWalker walker_;
   Stencil stencil_;
+  double least_altitude_;  // of a triangle in plan
   ErrorMeasure measure_;
   const MergeTreeOptions& options_;
   SampleLists lists_;
@@ -74,9 +76,9 @@ class EdgeCollapser {
   std::vector<VertexId> ring_;
   std::vector<std::uint32_t> ring_triangles_;
   Eigen::Vector3d star_area_ = Eigen::Vector3d::Zero();
-  std::vector<TrianglePlaces> fan_;              // that would come instead
-  std::vector<std::uint32_t> fan_triangles_;     // their ids
-  std::vector<std::uint32_t> samples_;           // under it
+  std::vector<TrianglePlaces> fan_;           // that would come instead
+  std::vector<std::uint32_t> fan_triangles_;  // their ids
+  std::vector<std::uint32_t> samples_;        // under it
 };
 
 }  // namespace terrane::hierarchy

@@ -99,8 +99,8 @@ void TreeGrower::choose_owners(const Split& split, std::span<const std::uint32_t
   for (std::size_t k = 0; k < arcs; ++k) {
     const std::uint32_t begin = split.apexes[k], end = split.apexes[(k + 1) % arcs];
     if (begin == end) continue;
-    auto at = static_cast<std::size_t>(std::ranges::find(ring_, begin, &RingEdge::from) -
-                                       ring_.begin());
+    auto at =
+        static_cast<std::size_t>(std::ranges::find(ring_, begin, &RingEdge::from) - ring_.begin());
     if (at == ring_.size()) damaged();
     for (;;) {
       if (owners_[at] != kNone) damaged();

@@ -37,8 +37,8 @@ class BoundsMeter {
 
   MergeTree& tree_;
   std::vector<Eigen::Vector3d> points_, normals_;
-  std::vector<bool> is_full_;      // vertices of the full mesh
-  std::vector<double> switched_;   // largest switch distance below each vertex
+  std::vector<bool> is_full_;     // vertices of the full mesh
+  std::vector<double> switched_;  // largest switch distance below each vertex
   SampleLists lists_;
   std::vector<std::uint32_t> samples_, corners_;  // of the merge at hand
   std::vector<TrianglePlaces> fan_;
@@ -130,7 +130,8 @@ void BoundsMeter::measure_ranges(std::uint32_t i, MergeBounds& bounds) const {
     if (area.squaredNorm() > 0) angle = std::max(angle, angle_between(axis, area));
   };
   for (const std::uint32_t t : tree_.coarse(i)) take_face(t);
-  for (std::uint32_t t = tree_.merges[i].fine_begin; t < tree_.merges[i].fine_end; ++t) take_face(t);
+  for (std::uint32_t t = tree_.merges[i].fine_begin; t < tree_.merges[i].fine_end; ++t)
+    take_face(t);
   bounds.radius = rounded_up(radius);
   bounds.angle = rounded_up(angle);
 }
@@ -140,8 +141,8 @@ double BoundsMeter::switch_distance(std::uint32_t i) {
   double distance = 0;
   for (std::uint32_t k = 0; k < merge.child_count; ++k) {
     const std::uint32_t child = merge.first_child + k;
-    distance = std::max({distance, switched_[child],
-                         (points_[child] - points_[merge.parent]).norm()});
+    distance =
+        std::max({distance, switched_[child], (points_[child] - points_[merge.parent]).norm()});
   }
   switched_[merge.parent] = std::max(switched_[merge.parent], distance);
   return distance;

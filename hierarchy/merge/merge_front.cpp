@@ -19,9 +19,10 @@ void MergeFront::Group::remove(std::uint32_t i) {
   members_.pop_back();
 }
 
-MergeFront::MergeFront(const MergeTree& tree)
+MergeFront::MergeFront(const MergeTree& tree, std::uint32_t morph_frames)
     : tree_(tree),
       display_(tree),
+      morph_(tree, morph_frames),
       made_(tree.merge_count(), 1),
       coarser_made_(tree.merge_count()),
       finer_missing_(tree.merge_count(), 0),
@@ -45,7 +46,12 @@ void MergeFront::undo_one(std::uint32_t i) {
   for (const std::uint32_t f : tree_.finer(i)) {
     if (--coarser_made_[f] == 0) last_made_.add(f);
   }
+  if (morph_.is_on()) {
+    // what moved here is about to lose triangles to others: it has to be where it belongs
+    for (const std::uint32_t c : tree_.coarser(i)) morph_.finish(c, display_);
+  }
   display_.split(i);
+  if (morph_.is_on()) morph_.open(i, display_);
   ++statistics_.splits;
 }
 
@@ -107,7 +113,20 @@ void MergeFront::coarsen(const ViewJudge& judge) {
     const std::uint32_t i = work_.back();
     work_.pop_back();
     ++statistics_.looked_at;
-    if (judge.allows(i)) make(i);
+    const bool is_allowed = judge.allows(i);
+    if (morph_.is_on()) {
+      make_in_time(i, is_allowed);
+    } else if (is_allowed) {
+      make(i);
+    }
+  }
+}
+
+void MergeFront::make_in_time(std::uint32_t i, bool is_allowed) {
+  if (is_allowed) {
+    morph_.close(i);
+  } else {
+    morph_.turn_back(i);
   }
 }
 
@@ -116,6 +135,8 @@ UpdateStatistics MergeFront::update(const ViewJudge& judge) {
   ++frame_;
   refine(judge);
   coarsen(judge);
+  for (const std::uint32_t i : morph_.advance(display_)) make(i);
+  work_.clear();
   return statistics_;
 }
 

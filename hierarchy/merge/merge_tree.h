@@ -41,10 +41,10 @@ struct Merge {
 ///
 /// Numbers are rounded up to 16 bits: what a file holds is what was measured.
 struct MergeBounds {
-  float error = 0, all_error = 0;    ///< of the triangles that the merge makes, see ErrorMeasure
+  float error = 0, all_error = 0;  ///< of the triangles that the merge makes, see ErrorMeasure
   float switched = 0, all_switched = 0;  ///< switch distance: see measure_bounds()
-  float radius = 0, all_radius = 0;  ///< of spheres about the first child (edge) or the parent
-  float angle = 0, all_angle = 0;    ///< of cones about that vertex's normal, radians, 0 to pi
+  float radius = 0, all_radius = 0;      ///< of spheres about the first child (edge) or the parent
+  float angle = 0, all_angle = 0;        ///< of cones about that vertex's normal, radians, 0 to pi
 
   bool operator==(const MergeBounds&) const = default;
 };

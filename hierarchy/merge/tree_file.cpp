@@ -58,9 +58,9 @@ void append_checksum(std::string& bytes, std::size_t from) {
 std::uint32_t upper_half(float value) { return std::bit_cast<std::uint32_t>(value) >> 16; }
 
 std::array<float MergeBounds::*, 8> bound_members() {
-  return {&MergeBounds::error,  &MergeBounds::all_error,  &MergeBounds::switched,
-          &MergeBounds::all_switched, &MergeBounds::radius, &MergeBounds::all_radius,
-          &MergeBounds::angle,  &MergeBounds::all_angle};
+  return {&MergeBounds::error,        &MergeBounds::all_error, &MergeBounds::switched,
+          &MergeBounds::all_switched, &MergeBounds::radius,    &MergeBounds::all_radius,
+          &MergeBounds::angle,        &MergeBounds::all_angle};
 }
 
 std::string coarsest_body(const MergeTree& tree) {
@@ -115,8 +115,8 @@ void write_merge(const MergeTree& tree, std::uint32_t i, const TreeGrower& growe
   previous = {merge.level, merge.parent};
   const auto ring = grower.ring(merge.parent);
   for (std::size_t k = 0; k < (merge.child_count == 1 ? 2 : 3); ++k) {
-    writer.number(static_cast<std::uint64_t>(std::ranges::find(ring, split.apexes[k]) -
-                                             ring.begin()));
+    writer.number(
+        static_cast<std::uint64_t>(std::ranges::find(ring, split.apexes[k]) - ring.begin()));
   }
   for (std::uint32_t k = 0; k < merge.child_count; ++k) {
     writer.difference(split.places[k], tree.points[merge.parent]);
@@ -261,10 +261,10 @@ class MergeReader {
 
 MergeReader read_coarsest(const Header& header, std::string_view body, const std::string& file) {
   PackedReader reader(body, file);
-  MergeTree seed{.lattice = {{header.origin[0], header.origin[1], header.origin[2]},
-                             header.exponent},
-                 .measure = header.measure,
-                 .region = header.region};
+  MergeTree seed{
+      .lattice = {{header.origin[0], header.origin[1], header.origin[2]}, header.exponent},
+      .measure = header.measure,
+      .region = header.region};
   std::vector<Eigen::Vector3f> normals;
   Eigen::Vector3i point(0, 0, 0);
   for (std::uint32_t i = 0; i < header.points; ++i) {

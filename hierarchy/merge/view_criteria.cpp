@@ -103,12 +103,14 @@ bool ViewJudge::allows(std::uint32_t centre, const Ranges& ranges) const {
     if (criteria_.silhouette_px && may_be_silhouette) {
       tolerance = std::min(tolerance, *criteria_.silhouette_px);
     }
-    has_highlight = criteria_.highlight_px &&
-                    highlight_contrast(to_eye, eye_spread, axis, ranges.angle) >
-                        criteria_.highlight_contrast;
+    has_highlight =
+        criteria_.highlight_px &&
+        highlight_contrast(to_eye, eye_spread, axis, ranges.angle) > criteria_.highlight_contrast;
   }
   const double scale = pixels_per_unit(to_centre, ranges.radius, is_in_view) * kMargin;
-  const auto shows = [&](double length, double limit) { return length > 0 && length * scale > limit; };
+  const auto shows = [&](double length, double limit) {
+    return length > 0 && length * scale > limit;
+  };
   const bool is_error = criteria_.measure == ScreenMeasure::kError;
   if (shows(is_error ? ranges.error : ranges.switched, tolerance)) return false;
   return !has_highlight || !shows(ranges.switched, *criteria_.highlight_px);

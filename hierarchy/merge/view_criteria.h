@@ -78,8 +78,8 @@ class ViewJudge {
   ViewCriteria criteria_;
   Eigen::Vector3d up_;
   double pixels_per_tangent_, tan_x_, tan_y_;
-  double side_x_, side_y_;      // 1 / cos of the half angles of view
-  double largest_secant_;       // 1 / cos at the picture's corners
+  double side_x_, side_y_;  // 1 / cos of the half angles of view
+  double largest_secant_;   // 1 / cos at the picture's corners
   bool needs_normals_;
 };
 

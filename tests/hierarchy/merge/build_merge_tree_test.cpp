@@ -36,7 +36,7 @@ TEST(BuildMergeTree, ItsFinestTrianglesAreTheMesh) {
        {on_lattice(sphere(3)), on_lattice(torn_torus(40, 16)), on_lattice(hills(21, 17))}) {
     for (const CollapseOrder order : {CollapseOrder::kLength, CollapseOrder::kError}) {
       const MergeTree tree = build_merge_tree(mesh, {.order = order});
-      EXPECT_EQ(shape_of_mesh(mesh_of(tree, full_mesh_triangles(tree))), shape_of_mesh(mesh));
+      EXPECT_TRUE(shape_of_mesh(mesh_of(tree, full_mesh_triangles(tree))) == shape_of_mesh(mesh));
     }
   }
 }
@@ -87,7 +87,15 @@ TEST(BuildMergeTree, AMergeOfBothEndsIsFreeExactlyWhereItsNeighboursAreThePublis
       if (front.is_made(i)) continue;
       bool is_free = true;
       for (const std::uint32_t f : tree.finer(i)) is_free = is_free && front.is_made(f);
-      ASSERT_EQ(is_free, std::ranges::includes(now, regions[i])) << frame << ", merge " << i;
+      // rule 1: the neighbours are there; rule 2: c is not itself one of a collapse still to come
+      bool is_published = std::ranges::includes(now, regions[i]);
+      for (std::uint32_t k = i + 1; k < tree.merge_count() && is_published; ++k) {
+        if (front.is_made(k)) continue;
+        for (const Corners& c : regions[k]) {
+          if (std::ranges::count(c, tree.merges[i].first_child) != 0) is_published = false;
+        }
+      }
+      ASSERT_EQ(is_free, is_published) << frame << ", merge " << i;
     }
   }
 }
@@ -136,8 +144,8 @@ TEST(MergeTreeOf, ALevelSequenceHasThreeChildrenAParentAndTheSameFinestMesh) {
   EXPECT_EQ(tree.merge_count(), collapses);
   EXPECT_EQ(tree.level_count(), sequence.level_count());
   for (const Merge& merge : tree.merges) EXPECT_EQ(merge.child_count, 3U);
-  EXPECT_EQ(shape_of_mesh(mesh_of(tree, full_mesh_triangles(tree))),
-            shape_of_mesh(mesh_at(sequence, 0)));
+  EXPECT_TRUE(shape_of_mesh(mesh_of(tree, full_mesh_triangles(tree))) ==
+              shape_of_mesh(mesh_at(sequence, 0)));
 }
 
 TEST(BuildMergeTree, RefusesSettingsOutOfRange) {

@@ -69,8 +69,7 @@ TEST(DisplayMesh, ItsArraysHoldThePlacesOfTheTrianglesThatShow) {
 TEST(DisplayMesh, JoinsRangesThatAreNear) {
   const MergeTree tree = build_merge_tree(sphere(3));
   const DisplayMesh display(tree);
-  EXPECT_EQ(display.changed_triangles(),
-            (std::vector<ChangedRange>{{0, tree.coarsest_triangles}}));
+  EXPECT_EQ(display.changed_triangles(), (std::vector<ChangedRange>{{0, tree.coarsest_triangles}}));
 }
 
 }  // namespace

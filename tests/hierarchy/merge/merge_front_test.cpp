@@ -33,7 +33,8 @@ long border_edges(const std::vector<Corners>& triangles) {
   }
   long count = 0;
   for (const std::uint64_t e : edges) {
-    count += !edges.contains(directed(static_cast<std::uint32_t>(e), static_cast<std::uint32_t>(e >> 32)));
+    count += !edges.contains(
+        directed(static_cast<std::uint32_t>(e), static_cast<std::uint32_t>(e >> 32)));
   }
   return count;
 }
@@ -58,8 +59,8 @@ bool has_fold(const MergeTree& tree, const MergeFront& front,
     if (is_full[t]) continue;
     const Corners& c = tree.triangles[t];
     const Eigen::Vector3d a = tree.place(c[0]).cast<double>();
-    const Eigen::Vector3d area = (tree.place(c[1]).cast<double>() - a)
-                                     .cross(tree.place(c[2]).cast<double>() - a);
+    const Eigen::Vector3d area =
+        (tree.place(c[1]).cast<double>() - a).cross(tree.place(c[2]).cast<double>() - a);
     for (const std::uint32_t v : c) {
       if (area.dot(normals[v]) <= 0) return true;
     }
@@ -82,8 +83,8 @@ std::vector<Eigen::Vector3d> normals_of(const MergeTree& tree) {
   std::vector<Eigen::Vector3d> sums(tree.points.size(), Eigen::Vector3d::Zero());
   for (const Corners& c : full_mesh_triangles(tree)) {
     const Eigen::Vector3d a = tree.place(c[0]).cast<double>();
-    const Eigen::Vector3d area = (tree.place(c[1]).cast<double>() - a)
-                                     .cross(tree.place(c[2]).cast<double>() - a);
+    const Eigen::Vector3d area =
+        (tree.place(c[1]).cast<double>() - a).cross(tree.place(c[2]).cast<double>() - a);
     for (const std::uint32_t v : c) sums[v] += area;
   }
   return sums;
@@ -114,7 +115,9 @@ void walk(const MergeTree& tree, bool may_fold = false) {
     const std::vector<Corners> shown = shown_triangles(tree, front);
     ASSERT_GE(border_edges(shown), 0) << "frame " << frame;
     ASSERT_EQ(border_edges(shown) == 0, expected.border_edges == 0) << "frame " << frame;
-    if (is_terrain && !may_fold) ASSERT_EQ(plan_area(tree, shown), area) << "frame " << frame;
+    if (is_terrain && !may_fold) {
+      ASSERT_EQ(plan_area(tree, shown), area) << "frame " << frame;
+    }
     if (!may_fold && !is_terrain) {
       ASSERT_FALSE(has_fold(tree, front, normals, is_full)) << "frame " << frame;
     }
@@ -129,7 +132,8 @@ void walk(const MergeTree& tree, bool may_fold = false) {
 
 TEST(MergeFront, StaysAManifoldWithoutFoldsOnAWalkAboutASphere) {
   walk(build_merge_tree(sphere(4)));
-  walk(build_merge_tree(sphere(4), {.order = CollapseOrder::kLength, .region = Region::kBothEnds}));
+  walk(build_merge_tree(
+      sphere(4), {.order = CollapseOrder::kLength, .region = Region::kBothEnds, .share = 1}));
 }
 
 TEST(MergeFront, StaysAManifoldWithoutFoldsOnAWalkAboutATornTorus) {
@@ -147,8 +151,8 @@ TEST(MergeFront, StaysAManifoldOnAWalkAboutAnObjectWithEdgesAndHoles) {
 
 TEST(MergeFront, CoversTheSamePlanWithoutFoldsOnAWalkOverHills) {
   walk(build_merge_tree(hills(41, 41)));
-  walk(build_merge_tree(hills(41, 31), {.order = CollapseOrder::kLength,
-                                        .region = Region::kBothEnds}));
+  walk(build_merge_tree(hills(41, 31),
+                        {.order = CollapseOrder::kLength, .region = Region::kBothEnds}));
 }
 
 TEST(MergeFront, StaysAManifoldOnWalksOverTriangleCollapses) {
@@ -170,10 +174,10 @@ TEST(MergeFront, ShowsTheSameMeshWheneverACameraComesBack) {
   }
   for (std::size_t i = seen.size(); i-- > 0;) {
     front.update(ViewJudge(tree, seen[i].first, seen[i].second));
-    EXPECT_EQ(shape_shown(tree, front), first[i]) << i;
+    EXPECT_TRUE(shape_shown(tree, front) == first[i]) << i;
     MergeFront fresh(tree);
     fresh.update(ViewJudge(tree, seen[i].first, seen[i].second));
-    EXPECT_EQ(shape_shown(tree, fresh), first[i]) << i;
+    EXPECT_TRUE(shape_shown(tree, fresh) == first[i]) << i;
   }
 }
 

@@ -28,16 +28,16 @@ inline SurfaceMesh sphere(int halvings) {
   for (int i = 0; i < halvings; ++i) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [at, is_new] = middles.try_emplace(
-          std::minmax(a, b), static_cast<std::uint32_t>(mesh.points.size()));
+      const auto [at, is_new] =
+          middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.points.size()));
       if (is_new) mesh.points.push_back((mesh.points[a] + mesh.points[b]).normalized());
       return at->second;
     };
     std::vector<Corners> finer;
     for (const auto& [a, b, c] : mesh.triangles) {
       const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-      for (const Corners& t : {Corners{a, ab, ca}, Corners{ab, b, bc}, Corners{ca, bc, c},
-                               Corners{ab, bc, ca}}) {
+      for (const Corners& t :
+           {Corners{a, ab, ca}, Corners{ab, b, bc}, Corners{ca, bc, c}, Corners{ab, bc, ca}}) {
         finer.push_back(t);
       }
     }
@@ -106,8 +106,7 @@ class RandomViews {
   }
   Camera camera() {
     const Eigen::Vector3d eye = middle_ + between(0.3, 5) * direction();
-    Camera camera =
-        Camera::looking_at(eye, middle_ + between(0, 0.2) * direction(), direction());
+    Camera camera = Camera::looking_at(eye, middle_ + between(0, 0.2) * direction(), direction());
     camera.vertical_fov_deg = between(20, 90);
     return camera;
   }
@@ -115,8 +114,8 @@ class RandomViews {
   ViewCriteria criteria() {
     ViewCriteria criteria;
     criteria.measure = coin() ? ScreenMeasure::kError : ScreenMeasure::kSwitchDistance;
-    criteria.tolerance_px = criteria.measure == ScreenMeasure::kError ? between(0.2, 20)
-                                                                      : between(10, 200);
+    criteria.tolerance_px =
+        criteria.measure == ScreenMeasure::kError ? between(0.2, 20) : between(10, 200);
     criteria.frustum = coin();
     criteria.back_faces = coin();
     if (coin()) criteria.silhouette_px = criteria.tolerance_px / 4;

@@ -11,11 +11,13 @@ namespace {
 using namespace testing;
 
 constexpr std::uint32_t kSide = 61;
+constexpr double kOnEdge = 1e-4;  // places are rounded to 5e-7, triangles are 1e-2 wide and more
 
 /// The height shown over each sample of a grid in [-1, 1]^2; NaN where nothing is.
 std::vector<double> heights_shown(const SurfaceMesh& finest, const std::vector<Corners>& shown,
                                   const std::vector<Eigen::Vector3d>& places) {
   std::vector<double> heights(finest.points.size(), std::nan(""));
+  std::vector<double> best(finest.points.size(), -1);
   const auto cell = [](double x) { return (x + 1) * (kSide - 1) / 2; };
   for (const Corners& corners : shown) {
     const Eigen::Vector3d &a = places[corners[0]], &b = places[corners[1]], &c = places[corners[2]];
@@ -30,7 +32,10 @@ std::vector<double> heights_shown(const SurfaceMesh& finest, const std::vector<C
         Eigen::Matrix2d sides;
         sides << (b - a).head<2>(), (c - a).head<2>();
         const Eigen::Vector2d uv = sides.inverse() * (p - a.head<2>());
-        if (uv.minCoeff() < -1e-9 || uv.sum() > 1 + 1e-9) continue;
+        // samples on edges are rounded: the triangle counts that is nearest to covering one
+        const double inside = std::min(uv.minCoeff(), 1 - uv.sum());
+        if (inside < -kOnEdge || inside <= best[s]) continue;
+        best[s] = inside;
         heights[s] = a.z() + uv[0] * (b.z() - a.z()) + uv[1] * (c.z() - a.z());
       }
     }
@@ -82,12 +87,12 @@ void expect_strict(const SurfaceMesh& finest, const MergeTree& tree, bool frustu
   RandomViews views(tree, 21);
   int compared = 0;
   double largest_share = 0;
-  // steps of the lattice that the samples were rounded to, as seen from the nearest camera
   for (int view = 0; view < 100; ++view) {
     const Camera camera = views.camera();
     const double tolerance_px = views.between(0.3, 5);
     front.update(ViewJudge(tree, camera, {.tolerance_px = tolerance_px, .frustum = frustum}));
     const auto [worst, count] = worst_in_picture(finest, tree, front, camera);
+    // 0.002: the lattice that samples were rounded to, as seen from the nearest camera
     ASSERT_LE(worst, tolerance_px + 0.002) << "view " << view;
     largest_share = std::max(largest_share, worst / tolerance_px);
     compared += count;

@@ -76,7 +76,9 @@ TEST(ViewJudge, WhatIsAllowedAsAWholeIsAllowedInEveryPart) {
     for (std::uint32_t i = tree.merge_count(); i-- > 0;) {
       all_allowed[i] = judge.allows(i);
       for (const std::uint32_t f : tree.finer(i)) all_allowed[i] = all_allowed[i] && all_allowed[f];
-      if (judge.allows_all(i)) ASSERT_TRUE(all_allowed[i]) << "view " << view << ", merge " << i;
+      if (judge.allows_all(i)) {
+        ASSERT_TRUE(all_allowed[i]) << "view " << view << ", merge " << i;
+      }
     }
   }
 }
