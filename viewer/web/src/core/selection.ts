@@ -52,8 +52,13 @@ export function nearestBoxes(root: Tile, eye: Vec3): number[] {
   const nearestM = Array<number>(root.level + 1).fill(Infinity);
   const search = (tile: Tile, distanceM: number): void => {
     // a box lies in its parent's: nothing below can be nearer
-    if (tile.children.length === 0 || nearestM.every((m, l) => l === 0 || m <= distanceM)) return;
+    if (nearestM.every((m, l) => l === 0 || m <= distanceM)) return;
+    if (tile.children.length === 0 && !tile.below) return;
     nearestM[tile.level] = Math.min(nearestM[tile.level]!, distanceM);
+    // what has not been read yet may be as near
+    for (let l = 1; tile.below && l < tile.level; ++l) {
+      nearestM[l] = Math.min(nearestM[l]!, distanceM);
+    }
     const below = tile.children.map(
       (child) => [child, distanceToBounds(boundsOf(child.box), eye)] as const,
     );

@@ -12,7 +12,7 @@ export interface Tile {
   readonly y: number;
   /** Holds the content, the content at the end of its morph, and the children's boxes. */
   readonly box: Box;
-  /** Address of the glb. */
+  /** Address of the glb; unknown before `below` has been read. */
   readonly url: string;
   readonly triangles: number;
   /** Largest vertical distance of its mesh to a sample, those of its descendants included. */
@@ -20,7 +20,25 @@ export interface Tile {
   readonly parent: Tile | null;
   /** None for a leaf; fewer than four where the rest has no data. */
   readonly children: readonly Tile[];
+  /** Where the tile's content and children are written, if that has still to be read. */
+  readonly below?: Below | undefined;
 }
+
+/** A tileset of its own, or a subtree of an implicit one. */
+export type Below =
+  | {readonly kind: 'tileset'; readonly url: string}
+  | {readonly kind: 'subtree'; readonly tiling: ImplicitTiling};
+
+/** How an implicit tileset is laid out. Templates hold {level}, {x} and {y}; level 0 is the root's. */
+export interface ImplicitTiling {
+  readonly rootLevel: number;
+  readonly subtreeLevels: number;
+  readonly subtreeUrl: string;
+  readonly contentUrl: string;
+}
+
+/** A tile while its tree is being read. */
+export type GrowingTile = {-readonly [Name in keyof Tile]: Tile[Name]} & {children: Tile[]};
 
 /** What the viewer needs to know about one level. */
 export interface Level {
@@ -56,12 +74,13 @@ export type Frame =
 /** A tileset that cannot be shown. The message names the file and what is wrong. */
 export class TilesetError extends Error {}
 
-interface TileJson {
+export interface TileJson {
   boundingVolume?: {box?: number[]};
   geometricError?: number;
   content?: {uri?: string};
   children?: TileJson[];
   transform?: number[];
+  implicitTiling?: {subtreeLevels: number; subtrees: {uri: string}};
   extras?: {terrane?: {level?: number; x?: number; y?: number; triangles?: number; max_error_m?: number}};
 }
 
@@ -95,7 +114,9 @@ export function parseTileset(tileset: unknown, terrane: unknown, baseUrl: string
   if (!description.format?.startsWith('terrane/1')) {
     throw new TilesetError(`terrane.json beside ${baseUrl}: format is not terrane/1`);
   }
-  const root = parseTile(rootJson, null, baseUrl);
+  const root = rootJson.implicitTiling
+    ? implicitRoot(rootJson, description.levels.length - 1, baseUrl)
+    : parseTile(rootJson, null, baseUrl);
   const levels = parseLevels(description.levels, root);
   return {
     root,
@@ -116,7 +137,8 @@ export function* tilesOf(tile: Tile): Generator<Tile> {
   for (const child of tile.children) yield* tilesOf(child);
 }
 
-function parseTile(json: TileJson, parent: Tile | null, baseUrl: string): Tile {
+/** @throws TilesetError where a field is absent */
+export function parseTile(json: TileJson, parent: Tile | null, baseUrl: string): GrowingTile {
   const id = json.extras?.terrane;
   if (id?.level === undefined || id.x === undefined || id.y === undefined) {
     throw new TilesetError(`${baseUrl}: a tile has no extras.terrane with level, x and y`);
@@ -129,21 +151,48 @@ function parseTile(json: TileJson, parent: Tile | null, baseUrl: string): Tile {
   if (parent && json.transform) {
     throw new TilesetError(`${baseUrl}: tile ${key} has a transform; only the root may have one`);
   }
-  const children: Tile[] = [];
-  const tile: Tile = {
+  const url = new URL(json.content.uri, baseUrl).href;
+  const isTileset = /\.json$/i.test(new URL(url).pathname);
+  const tile: GrowingTile = {
     key,
     level: id.level,
     x: id.x,
     y: id.y,
     box: parseBox(json.boundingVolume?.box, key, baseUrl),
-    url: new URL(json.content.uri, baseUrl).href,
+    url: isTileset ? '' : url,
     triangles: id.triangles ?? 0,
     errorM: id.max_error_m ?? json.geometricError ?? 0,
     parent,
-    children,
+    children: [],
+    below: isTileset ? {kind: 'tileset', url} : undefined,
   };
-  children.push(...(json.children ?? []).map((child) => parseTile(child, tile, baseUrl)));
+  tile.children.push(...(json.children ?? []).map((child) => parseTile(child, tile, baseUrl)));
   return tile;
+}
+
+function implicitRoot(json: TileJson, level: number, baseUrl: string): GrowingTile {
+  const resolve = (uri: string | undefined) => {
+    if (!uri) throw new TilesetError(`${baseUrl}: the implicit root lacks content or subtrees`);
+    // an address would escape the braces of the template
+    return decodeURI(new URL(uri, baseUrl).href);
+  };
+  const {subtreeLevels, subtrees} = json.implicitTiling!;
+  return {
+    ...{key: `${level}/0/0`, level, x: 0, y: 0, url: '', triangles: 0},
+    box: parseBox(json.boundingVolume?.box, `${level}/0/0`, baseUrl),
+    errorM: json.geometricError ?? 0,
+    parent: null,
+    children: [],
+    below: {
+      kind: 'subtree',
+      tiling: {
+        rootLevel: level,
+        subtreeLevels,
+        subtreeUrl: resolve(subtrees.uri),
+        contentUrl: resolve(json.content?.uri),
+      },
+    },
+  };
 }
 
 function parseFrame({kind, longitude_deg, latitude_deg, x, y}: TerraneJson['frame']): Frame {
@@ -151,7 +200,8 @@ function parseFrame({kind, longitude_deg, latitude_deg, x, y}: TerraneJson['fram
   return {kind, longitudeDeg: longitude_deg ?? 0, latitudeDeg: latitude_deg ?? 0};
 }
 
-function parseBox(numbers: number[] | undefined, key: string, baseUrl: string): Box {
+/** @throws TilesetError unless there are 12 numbers */
+export function parseBox(numbers: number[] | undefined, key: string, baseUrl: string): Box {
   if (numbers?.length !== 12 || !numbers.every(Number.isFinite)) {
     throw new TilesetError(`${baseUrl}: tile ${key} has no boundingVolume.box of 12 numbers`);
   }

@@ -6,6 +6,7 @@ import {pixelsPerRadian} from '../core/ranges';
 import {checkSeams, type SeamReport} from '../core/seams';
 import {kDefaults, kLooks, type Settings} from '../core/settings';
 import type {Source} from '../core/source';
+import {readBelow} from '../core/subtree';
 import {Streamer, type Frame} from '../core/streamer';
 import {Surface, type SurfacePoint} from '../core/surface';
 import {boundsOf, diagonal, distanceToBounds} from '../core/box';
@@ -227,6 +228,7 @@ export class Viewer {
   }
 
   private async load(tile: Tile, signal: AbortSignal): Promise<TileContent> {
+    if (tile.below) await readBelow(tile, (url) => this.source.read(url, signal));
     const file = await this.source.read(tile.url, signal);
     try {
       const decoded = await this.decoder.decode(file);
