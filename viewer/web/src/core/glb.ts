@@ -53,6 +53,8 @@ interface AccessorJson {
 interface GltfJson {
   accessors: AccessorJson[];
   bufferViews: ViewJson[];
+  extensionsRequired?: string[];
+  nodes?: {scale?: number[]}[];
   images?: {bufferView?: number; mimeType?: string}[];
   meshes: {
     extras?: {terrane?: {origin?: Vec3}};
@@ -71,9 +73,15 @@ const kArrays = {
 
 const kComponents: Record<string, number> = {SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4};
 
-/** @throws Error that says what the file lacks */
-export function readGlb(file: ArrayBuffer, decode: DecodeMeshopt): GlbTile {
+/**
+ * @param stepM lattice steps of the tile's level (east, north, up)
+ * @throws Error that says what the file lacks
+ */
+export function readGlb(file: ArrayBuffer, stepM: Vec3, decode: DecodeMeshopt): GlbTile {
   const {json, binary} = chunksOf(file);
+  if (json.extensionsRequired?.includes('KHR_draco_mesh_compression')) {
+    throw new Error('Draco cannot be read. Build with --compression meshopt or none');
+  }
   const mesh = json.meshes?.[0];
   const primitive = mesh?.primitives[0];
   const origin = mesh?.extras?.terrane?.origin;
@@ -87,14 +95,38 @@ export function readGlb(file: ArrayBuffer, decode: DecodeMeshopt): GlbTile {
     return numbers(accessor);
   };
   if (primitive.indices === undefined) throw new Error('no indices');
+  const [positions, toTargets] = [attribute('POSITION') as Steps, attribute('_MORPH') as Steps];
+  const normals = attribute('NORMAL');
+  // without a scale, numbers are metres
+  const metres = json.nodes?.[0]?.scale === undefined ? gltfSteps(stepM) : undefined;
   return {
     origin,
-    positions: attribute('POSITION') as Steps,
-    toTargets: attribute('_MORPH') as Steps,
-    normals: attribute('NORMAL') as Int8Array,
+    positions: metres ? divided(positions, metres) : positions,
+    toTargets: metres ? divided(toTargets, metres) : toTargets,
+    normals: normals instanceof Int8Array ? normals : signedBytes(normals, metres),
     indices: numbers(primitive.indices) as Uint16Array | Uint32Array,
     ...drape(json, primitive.attributes, numbers, bytesOf),
   };
+}
+
+function gltfSteps([east, north, up]: Vec3): Vec3 {
+  return [east, up, north];
+}
+
+/** Metres as steps; exact, steps are powers of two. */
+function divided(triples: Steps, steps: Vec3): Float32Array {
+  return Float32Array.from(triples, (value, i) => value / steps[i % 3]!);
+}
+
+/** Normals as bytes of length 127, multiplied by the steps as those of lattice tiles are. */
+function signedBytes(triples: ArrayLike<number>, steps: Vec3 | undefined): Int8Array {
+  const bytes = new Int8Array(triples.length);
+  for (let i = 0; i < triples.length; i += 3) {
+    const scaled = [0, 1, 2].map((k) => triples[i + k]! * (steps?.[k] ?? 1));
+    const size = Math.hypot(...scaled) || 1;
+    scaled.forEach((value, k) => (bytes[i + k] = Math.round((127 * value) / size)));
+  }
+  return bytes;
 }
 
 /** What lies on the terrain: colours of the vertices, or an image. */

@@ -15,7 +15,14 @@
 //
 // When the children arrive, the height r of the patch sinks until nothing of it stands out: detail
 // fades in. A camera that comes near makes a patch rise out of the distance without a step.
-import {boundsOf, distanceToBounds, type Bounds} from './box';
+import {
+  boundsOf,
+  distanceToBounds,
+  distanceToBox,
+  farthestDistance,
+  type Bounds,
+  type Box,
+} from './box';
 import type {Ranges} from './ranges';
 import type {Tile} from './tileset';
 import type {Vec3} from './vec3';
@@ -37,11 +44,11 @@ export const kOctaveS = 0.15;
 /** What the vertex shader has room for. */
 export const kMostHoldbacks = 64;
 
-/** The largest distance from a point of a box to another box. */
-export function farthestDistance(from: Bounds, to: Bounds): number {
-  const along = (k: 0 | 1 | 2) =>
-    Math.max(0, to.low[k] - from.low[k], from.high[k] - to.high[k]);
-  return Math.hypot(along(0), along(1), along(2));
+/** Whether a patch keeps all of a box at a distance of rangeM or more. */
+export function holdsBack({bounds, heightM}: Holdback, box: Box, rangeM: number): boolean {
+  // mostly its middle decides
+  if (heightM - distanceToBounds(bounds, box.center) < rangeM) return false;
+  return heightM - farthestDistance(box, bounds) >= rangeM;
 }
 
 /**
@@ -58,7 +65,7 @@ export function tilesWithoutChildren(
   const open = [root];
   for (let tile = open.pop(); tile; tile = open.pop()) {
     if (tile.children.length === 0) continue;
-    if (distanceToBounds(boundsOf(tile.box), eye) >= ranges[tile.level - 1]!) continue;
+    if (distanceToBox(tile.box, eye) >= ranges[tile.level - 1]!) continue;
     if (tile.children.every(isReady)) open.push(...tile.children);
     else found.push(tile);
   }

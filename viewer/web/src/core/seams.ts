@@ -16,7 +16,8 @@ import type {Vec3} from './vec3';
 
 /** A tile as it is drawn in one frame. */
 export interface DrawnTile {
-  readonly level: number;
+  /** Tiles of an octave are 2^octave finest tiles wide. */
+  readonly octave: number;
   readonly x: number;
   readonly y: number;
   /** Lattice steps from the tile's origin, glTF triples. */
@@ -134,7 +135,7 @@ function distance(a: Vec3, b: Vec3): number {
 }
 
 interface TilePlace {
-  readonly level: number;
+  readonly octave: number;
   readonly x: number;
   readonly y: number;
 }
@@ -142,12 +143,12 @@ interface TilePlace {
 /** Whether two tiles of the quadtree have a border or a corner in common. */
 export function areTouching(a: TilePlace, b: TilePlace): boolean {
   const meet = (p: number, q: number) => {
-    const [pSize, qSize] = [2 ** a.level, 2 ** b.level];
+    const [pSize, qSize] = [2 ** a.octave, 2 ** b.octave];
     return p * pSize <= (q + 1) * qSize && q * qSize <= (p + 1) * pSize;
   };
   return meet(a.x, b.x) && meet(a.y, b.y);
 }
 
 function isBefore(a: TilePlace, b: TilePlace): boolean {
-  return a.level - b.level < 0 || (a.level === b.level && (a.x - b.x || a.y - b.y) < 0);
+  return a.octave - b.octave < 0 || (a.octave === b.octave && (a.x - b.x || a.y - b.y) < 0);
 }

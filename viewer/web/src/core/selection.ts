@@ -1,6 +1,6 @@
 // Which tiles to show for a camera: a cut through the tree.
-import {boundsOf, distanceToBounds} from './box';
-import {farthestDistance, type Holdback} from './holdback';
+import {distanceToBox} from './box';
+import {holdsBack, type Holdback} from './holdback';
 import type {Ranges} from './ranges';
 import type {Tile} from './tileset';
 import type {Vec3} from './vec3';
@@ -27,12 +27,11 @@ export function selectTiles(
   const visits: Visit[] = [];
   const open = [root];
   for (let tile = open.pop(); tile; tile = open.pop()) {
-    const bounds = boundsOf(tile.box);
-    const distanceM = distanceToBounds(bounds, eye);
+    const distanceM = distanceToBox(tile.box, eye);
     const rangeM = tile.children.length > 0 ? ranges[tile.level - 1]! : 0;
     const split =
       distanceM < rangeM &&
-      holdbacks.every((hold) => hold.heightM - farthestDistance(bounds, hold.bounds) < rangeM);
+      !holdbacks.some((hold) => holdsBack(hold, tile.box, rangeM));
     visits.push({tile, distanceM, split});
     if (split) open.push(...tile.children);
   }
@@ -59,11 +58,9 @@ export function nearestBoxes(root: Tile, eye: Vec3): number[] {
     for (let l = 1; tile.below && l < tile.level; ++l) {
       nearestM[l] = Math.min(nearestM[l]!, distanceM);
     }
-    const below = tile.children.map(
-      (child) => [child, distanceToBounds(boundsOf(child.box), eye)] as const,
-    );
+    const below = tile.children.map((child) => [child, distanceToBox(child.box, eye)] as const);
     for (const [child, m] of below.sort((a, b) => a[1] - b[1])) search(child, m);
   };
-  search(root, distanceToBounds(boundsOf(root.box), eye));
+  search(root, distanceToBox(root.box, eye));
   return nearestM;
 }

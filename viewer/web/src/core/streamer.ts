@@ -1,6 +1,6 @@
 // From a camera to the tiles to draw, frame by frame: selection, requests, cache, and what is held
 // back until it is loaded.
-import {boundsOf, distanceToBounds} from './box';
+import {distanceToBox} from './box';
 import {Holdbacks, tilesWithoutChildren, type Holdback} from './holdback';
 import {RequestQueue, type Failure, type Fetch} from './request_queue';
 import {reducedRanges, wantedRanges, type Ranges} from './ranges';
@@ -168,7 +168,7 @@ function glide(shownPx: number, wantedPx: number, elapsedS: number): number {
 function byNeed(missing: readonly Visit[], {levels}: Tileset, view: View): Tile[] {
   const need = ({parent, level}: Tile): number => {
     if (!parent) return Infinity;
-    const distanceM = Math.max(1, distanceToBounds(boundsOf(parent.box), view.eye));
+    const distanceM = Math.max(1, distanceToBox(parent.box, view.eye));
     const share = view.isInPicture(parent) ? 1 : kUnseen;
     return (share * levels[level + 1]!.toleranceM) / distanceM;
   };

@@ -55,6 +55,8 @@ export interface Tileset {
   /** Index = level, 0 is the finest; the last one is the root's. */
   readonly levels: readonly Level[];
   readonly tileCells: number;
+  /** Levels between which tiles keep their size: 1, or k for stacks. */
+  readonly levelsPerOctave: number;
   readonly minHeightM: number;
   readonly maxHeightM: number;
   /** Plan distance of two samples, from below: the smaller of the two directions. */
@@ -94,6 +96,7 @@ interface LevelJson {
 interface TerraneJson {
   format?: string;
   tile_cells: number;
+  levels_per_octave?: number;
   dem: {columns: number; rows: number; min_height_m: number; max_height_m: number};
   frame: {kind: string; longitude_deg?: number; latitude_deg?: number; x?: number; y?: number};
   levels: LevelJson[];
@@ -122,6 +125,7 @@ export function parseTileset(tileset: unknown, terrane: unknown, baseUrl: string
     root,
     levels,
     tileCells: description.tile_cells,
+    levelsPerOctave: description.levels_per_octave ?? 1,
     minHeightM: description.dem.min_height_m,
     maxHeightM: description.dem.max_height_m,
     cellM: smallestCell(root.box, description.dem),

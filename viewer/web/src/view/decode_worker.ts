@@ -1,10 +1,12 @@
 // Decodes tiles away from the page's thread: what it gets is a file, what it sends is arrays.
 import {MeshoptDecoder} from 'three/examples/jsm/libs/meshopt_decoder.module.js';
 import {readGlb, type GlbTile} from '../core/glb';
+import type {Vec3} from '../core/vec3';
 
 export interface DecodeRequest {
   readonly id: number;
   readonly file: ArrayBuffer;
+  readonly stepM: Vec3;
 }
 
 export type DecodeAnswer =
@@ -17,10 +19,10 @@ const worker = self as unknown as {
   postMessage: (answer: DecodeAnswer, transfer: Transferable[]) => void;
 };
 
-worker.onmessage = async ({data: {id, file}}) => {
+worker.onmessage = async ({data: {id, file, stepM}}) => {
   try {
     await MeshoptDecoder.ready;
-    const tile = readGlb(file, (...stream) => MeshoptDecoder.decodeGltfBuffer(...stream));
+    const tile = readGlb(file, stepM, (...stream) => MeshoptDecoder.decodeGltfBuffer(...stream));
     const image = tile.image && (await decodedImage(tile.image));
     const {positions, toTargets, normals, indices, colors, places} = tile;
     const arrays = [positions, toTargets, normals, indices, colors, places];

@@ -150,7 +150,7 @@ export const kFragmentShader = /* glsl */ `
     return texture2D(image, vImagePlace).rgb;
     #else
     #ifdef COLORS
-    return vColor;
+    return pow(vColor, vec3(1.0 / 2.2));  // glTF's colours are linear light
     #else
     return heightColor();
     #endif

@@ -1,5 +1,5 @@
 import {Frustum, Matrix4, PerspectiveCamera, Scene, Vector3, WebGLRenderer, type Object3D} from 'three';
-import {boundsOf, corners, distanceToBounds, type Box} from '../core/box';
+import {corners, distanceToBox, type Box} from '../core/box';
 import type {HoldbackUniform, MorphUniforms} from '../core/morph';
 import {forward, type Pose} from '../core/pose';
 import {holdbackUniform, morphUniforms, renderOrigin} from '../core/render_origin';
@@ -83,7 +83,7 @@ export class TerrainView {
     this.camera.lookAt(new Vector3().fromArray(add(place, forward(pose))));
     const toCorner = ([x, y, z]: Vec3) => length(subtract([x, y, seen(z)], pose.eye));
     this.camera.far = 1.01 * Math.max(...corners(root.box).map(toCorner));
-    const away = distanceToBounds(boundsOf(root.box), eye) * Math.min(1, exaggeration);
+    const away = distanceToBox(root.box, eye) * Math.min(1, exaggeration);
     const nearest = Math.max(away, clearanceM / 4);
     const smallest = this.camera.far / kDepthSpan;
     this.camera.near = Math.min(0.9 * this.camera.far, Math.max(0.9 * nearest, smallest));

@@ -1,4 +1,5 @@
 import type {GlbTile} from '../core/glb';
+import type {Vec3} from '../core/vec3';
 import type {DecodeAnswer, DecodeRequest} from './decode_worker';
 import DecodeWorker from './decode_worker?worker&inline';
 
@@ -24,8 +25,8 @@ export class TileDecoder {
   }
 
   /** Takes the file over: it is empty afterwards. Rejects with what the file lacks. */
-  decode(file: ArrayBuffer): Promise<Decoded> {
-    const request: DecodeRequest = {id: this.nextId++, file};
+  decode(file: ArrayBuffer, stepM: Vec3): Promise<Decoded> {
+    const request: DecodeRequest = {id: this.nextId++, file, stepM};
     return new Promise((resolve, reject) => {
       this.waiting.set(request.id, {resolve, reject});
       this.worker.postMessage(request, [file]);

@@ -9,7 +9,7 @@ import type {Source} from '../core/source';
 import {readBelow} from '../core/subtree';
 import {Streamer, type Frame} from '../core/streamer';
 import {Surface, type SurfacePoint} from '../core/surface';
-import {boundsOf, diagonal, distanceToBounds} from '../core/box';
+import {diagonal, distanceToBox} from '../core/box';
 import type {Tile, Tileset} from '../core/tileset';
 import {length, subtract, type Vec3} from '../core/vec3';
 import {Navigation} from './navigation';
@@ -170,8 +170,9 @@ export class Viewer {
   checkSeams(): SeamReport {
     const frame = this.redraw();
     const tiles = frame.cut.map((tile) => {
-      const {level, x, y} = tile;
-      return {level, x, y, ...this.view.shownTile(tile, this.contentOf(tile), frame)};
+      const {x, y} = tile;
+      const octave = Math.floor(tile.level / this.tileset.levelsPerOctave);
+      return {octave, x, y, ...this.view.shownTile(tile, this.contentOf(tile), frame)};
     });
     return checkSeams(tiles, this.tileset.cellM);
   }
@@ -231,7 +232,7 @@ export class Viewer {
     if (tile.below) await readBelow(tile, (url) => this.source.read(url, signal));
     const file = await this.source.read(tile.url, signal);
     try {
-      const decoded = await this.decoder.decode(file);
+      const decoded = await this.decoder.decode(file, this.tileset.levels[tile.level]!.stepM);
       const beginMs = performance.now();
       const content = makeContent(decoded, tile, this.tileset.levels, this.view.shared);
       this.hasImagery ||= content.hasDrape;
@@ -268,7 +269,7 @@ export class Viewer {
     const errors = this.frame.cut
       .filter((tile) => tile.children.length > 0 && isInPicture(tile.box))
       .map((tile) => {
-        const awayM = distanceToBounds(boundsOf(tile.box), this.frame!.eye);
+        const awayM = distanceToBox(tile.box, this.frame!.eye);
         const errorM = this.tileset.levels[tile.level]!.toleranceM;
         return (errorM * this.pixelScale()) / Math.max(awayM, clearanceM);
       });

@@ -52,7 +52,7 @@ function openSeams(frame: Frame): number {
   const {tiles} = shownTiles(frame);
   const drawn = tiles.map((shown) => {
     const {level, x, y} = shown.tile;
-    return {...shown, level, x, y};
+    return {...shown, octave: level, x, y};
   });
   return checkSeams(drawn, tileset.cellM).mismatches;
 }

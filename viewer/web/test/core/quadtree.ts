@@ -23,6 +23,7 @@ export function quadtree(top: number, isThere: (id: Id) => boolean = () => true)
     root: makeTile(null, {level: top, x: 0, y: 0}, isThere),
     levels,
     tileCells: 64,
+    levelsPerOctave: 1,
     minHeightM: -kHalfHeightM,
     maxHeightM: kHalfHeightM,
     cellM: kLeafM / 64,

@@ -23,7 +23,7 @@ function drawn(level: number, x: number, y: number, ranges: number[], change = (
   change(stored);
   const step = 2 ** level / 16;
   const place = {level, origin: stored.origin, stepM: [step, step, step] as Vec3};
-  const tile: DrawnTile = {...stored, uniforms: morphUniforms(place, ranges, kEye, [0, 0, 0])};
+  const tile: DrawnTile = {...stored, octave: level, uniforms: morphUniforms(place, ranges, kEye, [0, 0, 0])};
   return tile;
 }
 
@@ -95,10 +95,10 @@ describe('checkSeams', () => {
 
 describe('areTouching', () => {
   it('sees borders and corners across levels', () => {
-    const fine = {level: 0, x: 3, y: 0};
-    expect(areTouching(fine, {level: 1, x: 2, y: 0})).toBe(true);
-    expect(areTouching(fine, {level: 1, x: 2, y: 1})).toBe(false);
-    expect(areTouching({level: 0, x: 3, y: 1}, {level: 1, x: 2, y: 1})).toBe(true);
-    expect(areTouching(fine, {level: 0, x: 5, y: 0})).toBe(false);
+    const fine = {octave: 0, x: 3, y: 0};
+    expect(areTouching(fine, {octave: 1, x: 2, y: 0})).toBe(true);
+    expect(areTouching(fine, {octave: 1, x: 2, y: 1})).toBe(false);
+    expect(areTouching({octave: 0, x: 3, y: 1}, {octave: 1, x: 2, y: 1})).toBe(true);
+    expect(areTouching(fine, {octave: 0, x: 5, y: 0})).toBe(false);
   });
 });

@@ -3,7 +3,7 @@ import {Holdbacks, tilesWithoutChildren, type Holdback} from '../../src/core/hol
 import {morphInterval, reducedRanges, wantedRanges, type Ranges} from '../../src/core/ranges';
 import {areTouching} from '../../src/core/seams';
 import {cutOf, nearestBoxes, selectTiles} from '../../src/core/selection';
-import {boundsOf, distanceToBounds} from '../../src/core/box';
+import {distanceToBounds, distanceToBox} from '../../src/core/box';
 import {tilesOf, type Tile} from '../../src/core/tileset';
 import {length, subtract, type Vec3} from '../../src/core/vec3';
 import {kLeafM, quadtree, randomEye} from './quadtree';
@@ -11,6 +11,11 @@ import {randomSource} from './random';
 
 const kTop = 5;
 const kPixelScale = 500;
+
+/** With a level to each octave. */
+function areNeighbours(a: Tile, b: Tile): boolean {
+  return areTouching({...a, octave: a.level}, {...b, octave: b.level});
+}
 
 /** How many tiles of a cut cover each finest tile. */
 function coverage(cut: readonly Tile[]): number[] {
@@ -58,7 +63,7 @@ describe('selectTiles', () => {
     for (const {cut} of randomCuts(2, 100)) {
       for (const a of cut) {
         for (const b of cut) {
-          if (!areTouching(a, b)) continue;
+          if (!areNeighbours(a, b)) continue;
           expect(Math.abs(a.level - b.level)).toBeLessThanOrEqual(1);
           if (a.level !== b.level) ++mixed;
         }
@@ -72,7 +77,7 @@ describe('selectTiles', () => {
     for (const {eye, ranges, holdbacks, cut} of randomCuts(3, 200)) {
       for (const fine of cut) {
         for (const coarse of cut) {
-          if (fine.level + 1 !== coarse.level || !areTouching(fine, coarse)) continue;
+          if (fine.level + 1 !== coarse.level || !areNeighbours(fine, coarse)) continue;
           for (const corner of sharedCorners(fine, coarse)) {
             const distanceM = shownDistance(corner, eye, holdbacks);
             const {endM} = morphInterval(ranges[fine.level]!);
@@ -131,7 +136,7 @@ describe('nearestBoxes', () => {
       const expected = Array<number>(kTop + 1).fill(Infinity);
       for (const tile of tilesOf(root)) {
         if (tile.children.length === 0) continue;
-        expected[tile.level] = Math.min(expected[tile.level]!, distanceToBounds(boundsOf(tile.box), eye));
+        expected[tile.level] = Math.min(expected[tile.level]!, distanceToBox(tile.box, eye));
       }
       expect(nearestBoxes(root, eye)).toEqual(expected);
     }
