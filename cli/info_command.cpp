@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -25,6 +26,44 @@ void print_row(std::string_view name, const std::string& value) {
   fmt::print("{:<16}{}\n", name, value);
 }
 
+/// The middle of the data set, for a map.
+std::string place_of(const nlohmann::json& frame) {
+  if (frame.at("kind") == "local") {
+    return fmt::format("not on the Earth; middle at x {:.1f}, y {:.1f} m",
+                       frame.at("x").get<double>(), frame.at("y").get<double>());
+  }
+  const auto latitude_deg = frame.at("latitude_deg").get<double>();
+  const auto longitude_deg = frame.at("longitude_deg").get<double>();
+  return fmt::format("{:.5f} {}, {:.5f} {}", std::abs(latitude_deg), latitude_deg < 0 ? 'S' : 'N',
+                     std::abs(longitude_deg), longitude_deg < 0 ? 'W' : 'E');
+}
+
+/// The first name in a WKT is that of the CRS.
+std::string crs_name_of(const nlohmann::json& dem) {
+  const auto wkt = dem.at("crs_wkt").get<std::string>();
+  const std::size_t begin = wkt.find('"');
+  const std::size_t end = wkt.find('"', begin + 1);
+  return end == std::string::npos ? "" : wkt.substr(begin + 1, end - begin - 1);
+}
+
+void describe_each_level(const nlohmann::json& levels) {
+  std::int64_t tiles = 0, triangles = 0;
+  double bytes = 0;
+  fmt::print("\n{:>5} {:>12} {:>12} {:>12} {:>7} {:>10} {:>9}\n", "level", "tolerance m",
+             "max error m", "rms error m", "tiles", "triangles", "MB");
+  for (const auto& level : levels) {
+    tiles += level.at("tiles").get<std::int64_t>();
+    triangles += level.at("triangles").get<std::int64_t>();
+    bytes += level.at("bytes").get<double>();
+    fmt::print("{:>5} {:>12.3f} {:>12.3f} {:>12.3f} {:>7} {:>10} {:>9.2f}\n",
+               level.at("level").get<int>(), level.at("tolerance_m").get<double>(),
+               level.at("max_error_m").get<double>(), level.at("rms_error_m").get<double>(),
+               level.at("tiles").get<std::int64_t>(), level.at("triangles").get<std::int64_t>(),
+               level.at("bytes").get<double>() / 1e6);
+  }
+  fmt::print("{:>5} {:>38} {:>7} {:>10} {:>9.2f}\n", "all", "", tiles, triangles, bytes / 1e6);
+}
+
 void describe_levels(const nlohmann::json& json) {
   const auto& dem = json.at("dem");
   print_row("written by", json.at("generator").get<std::string>());
@@ -33,15 +72,9 @@ void describe_levels(const nlohmann::json& json) {
                        dem.at("columns").get<std::int64_t>(), dem.at("rows").get<std::int64_t>(),
                        dem.at("samples_with_data").get<std::int64_t>(),
                        dem.at("min_height_m").get<double>(), dem.at("max_height_m").get<double>()));
-  fmt::print("\n{:>5} {:>12} {:>12} {:>12} {:>7} {:>10} {:>9}\n", "level", "tolerance m",
-             "max error m", "rms error m", "tiles", "triangles", "MB");
-  for (const auto& level : json.at("levels")) {
-    fmt::print("{:>5} {:>12.3f} {:>12.3f} {:>12.3f} {:>7} {:>10} {:>9.2f}\n",
-               level.at("level").get<int>(), level.at("tolerance_m").get<double>(),
-               level.at("max_error_m").get<double>(), level.at("rms_error_m").get<double>(),
-               level.at("tiles").get<std::int64_t>(), level.at("triangles").get<std::int64_t>(),
-               level.at("bytes").get<double>() / 1e6);
-  }
+  print_row("place", place_of(json.at("frame")));
+  if (const std::string crs = crs_name_of(dem); !crs.empty()) print_row("CRS", crs);
+  describe_each_level(json.at("levels"));
 }
 
 /// terrane.json of a folder or an archive; a damaged one is the input's fault.
@@ -108,6 +141,10 @@ void run(const InfoCommand& command, const CommonOptions& common) {
     describe_folder(first);
   } else if (is_alone && archive::is_archive_name(first)) {
     describe_archive(first);
+  } else if (is_alone && std::filesystem::exists(first / ".work" / "key")) {
+    throw InputError(fmt::format(
+        "{}: its build is not finished. Run the same 'terrane build' again, it goes on there",
+        first.string()));
   } else {
     describe_dem(command, common);
   }

@@ -124,7 +124,7 @@ TEST_P(DamagedArchive, SurvivesWildNumbers) {
 
 INSTANTIATE_TEST_SUITE_P(AllFormats, DamagedArchive,
                          ::testing::Values("pmtiles", "plain_pmtiles", "3tz"),
-                         [](const auto& info) { return std::string("As_") + info.param; });
+                         [](const auto& format) { return std::string("As_") + format.param; });
 
 }  // namespace
 }  // namespace terrane::archive

@@ -6,7 +6,9 @@
 #include <map>
 
 #include "archive/deflate.h"
+#include "archive/packed_folder.h"
 #include "archive/pmtiles_header.h"
+#include "archive/write_three_tz.h"
 #include "core/errors.h"
 #include "tests/archive/temporary_folder.h"
 
@@ -121,7 +123,7 @@ TEST_P(Pack, NamesTheFileThatCannotBeWritten) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BothFormats, Pack, ::testing::Values("pmtiles", "3tz"),
-                         [](const auto& info) { return std::string("As_") + info.param; });
+                         [](const auto& format) { return std::string("As_") + format.param; });
 
 class PackPmtiles : public ::testing::Test {
  protected:
@@ -196,6 +198,22 @@ TEST_F(PackPmtiles, RefusesTilesThatAreNoQuadtree) {
   folder_.write("out/0/9/0.png", "x");
   folder_.write("out/1/9/9.png", "x");
   EXPECT_THROW(packed(), InputError);
+}
+
+// A plain ZIP holds 65,535 files at most.
+TEST(WriteThreeTz, HoldsMoreFilesThanAPlainZip) {
+  const TemporaryFolder folder;
+  folder.write("tile", "glTF");
+  std::vector<PackedFile> files;
+  for (int i = 0; i < 66'000; ++i) {
+    files.push_back({"tiles/" + std::to_string(100'000 + i) + ".glb", folder / "tile", 4});
+  }
+  NoProgress quiet;
+  write_three_tz(files, folder / "x.3tz", quiet);
+  const auto archive = open_archive(folder / "x.3tz");
+  EXPECT_EQ(archive->facts().files, files.size());
+  EXPECT_EQ(archive->read("tiles/165999.glb"), "glTF");
+  EXPECT_FALSE(archive->read("tiles/166000.glb"));
 }
 
 TEST(OpenArchive, RefusesWhatIsNoArchive) {

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What the program says of itself, and where it says it."""
 
+import pathlib
 import re
 import tempfile
 import unittest
@@ -53,6 +54,13 @@ class Usage(unittest.TestCase):
             status, printed, _ = terrane("info", folder)
             self.assertEqual(status, 0)
             self.assertIn("tolerance m", printed)
+            self.assertRegex(printed, r"(?m)^  all +\d+ +\d+ +\d+\.\d+$")
+            (pathlib.Path(folder) / "terrane.json").unlink()
+            (pathlib.Path(folder) / ".work").mkdir()
+            (pathlib.Path(folder) / ".work/key").write_text("key")
+            status, _, said = terrane("info", folder)
+            self.assertEqual(status, 3)
+            self.assertIn("not finished", said)
 
     def test_verify_prints_a_table_and_holds(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -79,7 +79,7 @@ TEST_P(ServeArchive, SendsTheArchiveItselfByRanges) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BothFormats, ServeArchive, ::testing::Values("pmtiles", "3tz"),
-                         [](const auto& info) { return std::string("As_") + info.param; });
+                         [](const auto& format) { return std::string("As_") + format.param; });
 
 TEST(ServeSeveral, ListsThemAndServesEachBelowItsName) {
   const TemporaryFolder folder;

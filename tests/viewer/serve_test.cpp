@@ -223,6 +223,17 @@ TEST_F(Serve, NeverSendsAFileFromOutside) {
   }
 }
 
+TEST_F(Serve, SendsNothingFromBehindANulByte) {
+  for (const char* before : {"/letters.glb", "/..", "/", "/none"}) {
+    std::string request = std::string("GET ") + before;
+    request += '\0';
+    request += "/../secret.txt HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n";
+    // the path ends at the NUL, for the checks and for the file alike
+    EXPECT_THAT(testing::send_raw(server_.port(), request).body, Not(HasSubstr("secret")))
+        << before;
+  }
+}
+
 TEST_F(Serve, HidesFilesThatStartWithADot) {
   for (const char* target : {"/.work/state", "/%2ework/state", "/.work/", "/x/../.work/state"}) {
     EXPECT_EQ(get(target).status, 404) << target;
@@ -261,7 +272,8 @@ TEST_F(Serve, TellsABrowserThatEveryOriginMayAsk) {
 TEST_F(Serve, SurvivesNonsense) {
   for (const std::string& request :
        {std::string("nonsense\r\n\r\n"), std::string("GET\r\n\r\n"),
-        std::string("GET / HTTP/9.9\r\n\r\n"), std::string("\x16\x03\x01\r\n\r\n"),
+        std::string("GET / HTTP/9.9\r\n\r\n"), std::string("GET / HTTP/1.1\r\n\r\n"),
+        std::string("\x16\x03\x01\r\n\r\n"),
         "GET /" + std::string(20'000, 'a') + " HTTP/1.1\r\nConnection: close\r\n\r\n",
         "GET /" + std::string(5'000, '/') + " HTTP/1.1\r\nConnection: close\r\n\r\n",
         "GET / HTTP/1.1\r\nX: " + std::string(20'000, 'a') + "\r\nConnection: close\r\n\r\n"}) {

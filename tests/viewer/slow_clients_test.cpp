@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/viewer/gunzip.h"
 #include "tests/viewer/raw_http.h"
 #include "tests/viewer/running_server.h"
 #include "tests/viewer/temporary_folder.h"
@@ -155,6 +156,38 @@ TEST_F(SlowClients, ReadersDoNotBlockOthers) {
   const auto readers = many_lines(50, server.port(),
                                   "GET /large.glb HTTP/1.1\r\nHost: x\r\n\r\n");  // and never read
   expect_quick_answers(server.port());
+}
+
+// zlib's level 4 makes some 60 MB/s of this: half a second for each of the four.
+TEST_F(SlowClients, WhoWantLargeTextsCompressedDoNotBlockOthers) {
+  std::string text;
+  for (int i = 0; text.size() < 30'000'000; ++i) text += std::to_string(i * 7919) + ",";
+  for (const char* name : {"1.json", "2.json", "3.json", "4.json"}) folder_.write(name, text);
+  const RunningServer server(options());
+  std::vector<std::future<testing::RawAnswer>> large;
+  for (const char* target : {"/1.json", "/2.json", "/3.json", "/4.json"}) {
+    large.push_back(std::async(std::launch::async, [&server, target] {
+      return request_raw(server.port(), "GET", target, "Accept-Encoding: gzip\r\n");
+    }));
+  }
+  std::this_thread::sleep_for(milliseconds(100));  // all are under way
+  expect_quick_answers(server.port());
+  for (auto& answer : large) {
+    const testing::RawAnswer got = answer.get();
+    EXPECT_EQ(got.headers.at("content-encoding"), "gzip");
+    EXPECT_TRUE(testing::gunzip(got.body, text.size()) == text);
+  }
+}
+
+TEST_F(SlowClients, WhoWantLargeTextsCompressedDoNotKeepTheServerFromStopping) {
+  folder_.write("large.json", std::string(30'000'000, ' '));
+  Server server({.data = {folder_.path()}, .port = 0});
+  auto run = std::async(std::launch::async, [&server] { server.run(); });
+  const auto waiting = many_lines(
+      3, server.port(), "GET /large.json HTTP/1.1\r\nHost: x\r\nAccept-Encoding: gzip\r\n\r\n");
+  std::this_thread::sleep_for(milliseconds(50));
+  server.stop();
+  EXPECT_EQ(run.wait_for(seconds(15)), std::future_status::ready);
 }
 
 TEST_F(SlowClients, GetTheRestOfAnAnswerWhenTheServerStops) {

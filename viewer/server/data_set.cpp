@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <map>
+#include <vector>
 
 #include "archive/archive.h"
 #include "core/errors.h"
@@ -23,16 +23,19 @@ std::string name_of(const fs::path& path, bool is_archive) {
 
 /// The viewer of this binary, for data sets without one.
 std::optional<DataSetFile> find_viewer_file(std::string_view path) {
+  static const std::vector<DataSetFile> files = [] {
+    std::vector<DataSetFile> made;
+    for (const ViewerFile& file : viewer_files()) {
+      made.push_back({.name = std::string(file.path),
+                      .content = FileContent(std::string(file.content)),
+                      .tag = fmt::format("viewer-{:x}-{:x}", file.content.size(),
+                                         std::hash<std::string_view>()(file.content))});
+    }
+    return made;
+  }();
   const std::string_view name = path == "/" ? "index.html" : path.substr(1);
-  const auto files = viewer_files();
-  const auto found = std::ranges::find(files, name, &ViewerFile::path);
-  if (found == files.end()) return std::nullopt;
-  static const std::int64_t started_ns = 1;  // part of the program: as old as anything
-  return DataSetFile{.name = std::string(name),
-                     .content = FileContent(std::string(found->content)),
-                     .tag = fmt::format("viewer-{:x}-{:x}", found->content.size(),
-                                        std::hash<std::string_view>()(found->content)),
-                     .modified_ns = started_ns};
+  const auto found = std::ranges::find(files, name, &DataSetFile::name);
+  return found == files.end() ? std::nullopt : std::optional(*found);
 }
 
 class FolderDataSet final : public DataSet {

@@ -18,6 +18,7 @@ namespace {
 constexpr std::uint64_t kLargestGzipBytes = 64 << 20;
 constexpr std::uint64_t kSmallestGzipBytes = 256;  // less becomes no packet less
 constexpr std::uint64_t kLargestPlainBytes = 1 << 30;
+constexpr std::uint64_t kQuickBytes = 1 << 18;  // compressed in a few milliseconds
 constexpr std::size_t kLongestTarget = 8192;
 
 FileAnswer text_answer(int status, const std::string& text) {
@@ -42,6 +43,20 @@ FileAnswer options_answer() {
                       {"Access-Control-Allow-Headers", "*"},
                       {"Access-Control-Max-Age", "86400"}},
           .body = {}};
+}
+
+/// What is wrong with the form of a request; nothing if it is good.
+std::optional<FileAnswer> refuse_form(const FileRequest& request) {
+  // a NUL in the request line cuts it off before its version
+  if (!request.version.starts_with("HTTP/")) return text_answer(400, "this is no HTTP");
+  if (request.version != "HTTP/1.1" && request.version != "HTTP/1.0") {
+    return text_answer(505, "only HTTP/1.1 and 1.0 are spoken");
+  }
+  if (request.version == "HTTP/1.1" && !request.has_host) {
+    return text_answer(400, "the header Host is missing");
+  }
+  if (request.target.size() > kLongestTarget) return text_answer(414, "the address is too long");
+  return std::nullopt;
 }
 
 FileAnswer redirect_answer(const std::string& location) {
@@ -83,7 +98,8 @@ class Answering {
     const MediaType type = media_type_of(file->name);
     if (path_.ends_with('/')) path_ += "index.html";
     file->is_gzipped = file->is_gzipped || lies_gzipped(*file, type);
-    return answer_with(choose(*file, type), type);
+    const auto chosen = choose(*file, type);
+    return chosen ? answer_with(*chosen, type) : FileAnswer{.status = FileAnswer::kTakesTime};
   }
 
  private:
@@ -96,7 +112,8 @@ class Answering {
     return type.may_lie_gzipped && archive::looks_gzipped(file.content.read(0, 3));
   }
 
-  Representation choose(const DataSetFile& file, const MediaType& type) const {
+  /// Nothing if it takes more time than there is.
+  std::optional<Representation> choose(const DataSetFile& file, const MediaType& type) const {
     const Representation as_it_is{file.content, file.tag, ""};
     if (file.is_gzipped) return accepts("gzip") ? gzipped(file) : unpacked(file);
     // a range counts bytes of the plain file
@@ -108,9 +125,14 @@ class Answering {
         !accepts("gzip")) {
       return as_it_is;
     }
-    const auto text =
-        cache_.get(path_ + "\n" + file.tag, [&] { return gzip(file.content.read_all()); });
-    return {FileContent(text), file.tag + "-gz", "gzip"};
+    const std::string key = path_ + "\n" + file.tag;
+    if (takes_time(bytes, key)) return std::nullopt;
+    const auto text = cache_.get(key, [&] { return gzip(file.content.read_all()); });
+    return Representation{FileContent(text), file.tag + "-gz", "gzip"};
+  }
+
+  bool takes_time(std::uint64_t bytes, const std::string& key) const {
+    return request_.must_be_quick && bytes > kQuickBytes && !cache_.holds(key);
   }
 
   std::optional<Representation> find_sibling(const DataSetFile& file, std::string_view coding,
@@ -127,11 +149,13 @@ class Answering {
     return {file.content, file.tag + "-gz", "gzip"};
   }
 
-  Representation unpacked(const DataSetFile& file) const {
-    const auto text = cache_.get(path_ + "\nplain\n" + file.tag, [&] {
+  std::optional<Representation> unpacked(const DataSetFile& file) const {
+    const std::string key = path_ + "\nplain\n" + file.tag;
+    if (takes_time(file.content.bytes(), key)) return std::nullopt;
+    const auto text = cache_.get(key, [&] {
       return archive::gunzip(file.content.read_all(), kLargestPlainBytes).value_or("");
     });
-    return {FileContent(text), file.tag, ""};
+    return Representation{FileContent(text), file.tag, ""};
   }
 
   std::string cache_control(const MediaType& type) const {
@@ -188,9 +212,9 @@ class Answering {
 
 FileAnswer answer_file_request(const Site& site, const FileRequest& request, const FileRules& rules,
                                GzipCache& cache) {
+  if (auto refusal = refuse_form(request)) return *std::move(refusal);
   if (request.method == "OPTIONS") return options_answer();
   if (request.method != "GET" && request.method != "HEAD") return method_answer();
-  if (request.target.size() > kLongestTarget) return text_answer(414, "the address is too long");
   auto path = decode_url_path(request.target);
   if (!path) return text_answer(400, "the address is no path");
   return Answering(site, request, rules, cache, *std::move(path)).run();

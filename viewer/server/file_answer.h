@@ -14,10 +14,13 @@ namespace terrane::viewer {
 struct FileRequest {
   std::string method;
   std::string target;  ///< as in the request line
+  std::string version = "HTTP/1.1";
+  bool has_host = true;
   std::string accept_encoding;
   std::string if_none_match;
   std::string if_range;
   std::string range;
+  bool must_be_quick = false;  ///< what takes long to compress is not compressed now
 };
 
 /// How files are sent.
@@ -28,6 +31,9 @@ struct FileRules {
 /// An HTTP response as it is to be sent, less Content-Length. Answers to HEAD and 304 have the body
 /// whose length they state; it is not sent.
 struct FileAnswer {
+  /// In place of a status: this takes time. Ask without must_be_quick, elsewhere, then again.
+  static constexpr int kTakesTime = 0;
+
   int status = 200;
   std::vector<std::pair<std::string, std::string>> headers;
   FileContent body;

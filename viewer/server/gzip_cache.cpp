@@ -17,6 +17,11 @@ std::shared_ptr<const std::string> GzipCache::get(const std::string& key,
   return text;
 }
 
+bool GzipCache::holds(const std::string& key) {
+  const std::scoped_lock lock(mutex_);
+  return by_key_.contains(key);
+}
+
 void GzipCache::keep(const std::string& key, const std::shared_ptr<const std::string>& text) {
   if (text->size() > most_bytes_ || by_key_.contains(key)) return;
   by_use_.push_front({key, text});

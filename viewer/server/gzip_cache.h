@@ -20,6 +20,8 @@ class GzipCache {
   std::shared_ptr<const std::string> get(const std::string& key,
                                          const std::function<std::string()>& make);
 
+  bool holds(const std::string& key);
+
  private:
   struct Entry {
     std::string key;

@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "core/errors.h"
+#include "viewer/server/background_jobs.h"
 #include "viewer/server/waiting_clients.h"
 
 namespace terrane::viewer {
@@ -36,7 +37,8 @@ struct Connection {
   WaitingClient* client = nullptr;
   std::string target;  ///< of the request under way, as it came
   std::uint64_t uploaded_bytes = 0;
-  bool is_begun = false;  ///< the request's head is there, its answer is not sent yet
+  bool is_begun = false;     ///< the request's head is there, its answer is not sent yet
+  bool is_prepared = false;  ///< what takes time for the answer was done
   AccessRecord record;
 };
 
@@ -67,10 +69,12 @@ bool has_body(const char* method, int status) {
   return std::strcmp(method, "HEAD") != 0 && status != 304;
 }
 
-FileRequest file_request(MHD_Connection* connection, const char* method,
+FileRequest file_request(MHD_Connection* connection, const char* method, const char* version,
                          const std::string& target) {
   return {.method = method,
           .target = target,
+          .version = version,
+          .has_host = !header_of(connection, "Host").empty(),
           .accept_encoding = header_of(connection, "Accept-Encoding"),
           .if_none_match = header_of(connection, "If-None-Match"),
           .if_range = header_of(connection, "If-Range"),
@@ -141,7 +145,7 @@ class HttpDaemon::Impl {
  private:
   void start(ListeningSocket& socket) {
     const unsigned int threads = std::clamp(std::thread::hardware_concurrency(), 2U, 16U);
-    unsigned int flags = MHD_USE_EPOLL_INTERNAL_THREAD | MHD_USE_ITC;
+    unsigned int flags = MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME;
     if (socket.is_ipv6()) flags |= MHD_USE_IPv6;
     daemon_ = MHD_start_daemon(flags, 0, nullptr, nullptr, &Impl::on_request, this,  //
                                MHD_OPTION_LISTEN_SOCKET, socket.descriptor(),        //
@@ -150,7 +154,6 @@ class HttpDaemon::Impl {
                                static_cast<unsigned int>(options_.connections),               //
                                MHD_OPTION_CONNECTION_TIMEOUT, kStalledTimeout_s,              //
                                MHD_OPTION_CONNECTION_MEMORY_LIMIT, kMemoryPerConnection,      //
-                               MHD_OPTION_STRICT_FOR_CLIENT, 1,                               //
                                MHD_OPTION_URI_LOG_CALLBACK, &Impl::on_target, this,           //
                                MHD_OPTION_UNESCAPE_CALLBACK, &Impl::leave_as_it_is, nullptr,  //
                                MHD_OPTION_NOTIFY_CONNECTION, &Impl::on_connection, this,      //
@@ -166,6 +169,7 @@ class HttpDaemon::Impl {
 
   void stop() {
     if (daemon_ == nullptr) return;
+    jobs_.end();  // no connection may rest any more
     MHD_stop_daemon(daemon_);
     daemon_ = nullptr;
     // only now may nobody use it any more
@@ -222,8 +226,10 @@ class HttpDaemon::Impl {
 
   MHD_Result answer(Connection& connection, MHD_Connection* handle, const char* method,
                     const char* version) {
-    FileAnswer answer = answer_file_request(site_, file_request(handle, method, connection.target),
-                                            options_.rules, cache_);
+    FileRequest request = file_request(handle, method, version, connection.target);
+    request.must_be_quick = !connection.is_prepared;
+    FileAnswer answer = answer_file_request(site_, request, options_.rules, cache_);
+    if (answer.status == FileAnswer::kTakesTime) return prepare(connection, handle, request);
     MHD_Response* response = response_of(answer.body, has_body(method, answer.status));
     if (response == nullptr) return MHD_NO;
     for (const auto& [name, value] : answer.headers) {
@@ -234,6 +240,18 @@ class HttpDaemon::Impl {
     MHD_destroy_response(response);
     if (options_.log != nullptr) note(connection, handle, method, version, answer);
     return is_queued;
+  }
+
+  /// Lets the connection rest until the answer is in the cache; then it is asked for again.
+  MHD_Result prepare(Connection& connection, MHD_Connection* handle, FileRequest request) {
+    connection.is_prepared = true;
+    request.must_be_quick = false;
+    MHD_suspend_connection(handle);
+    const bool is_accepted =
+        jobs_.add([this, request] { answer_file_request(site_, request, options_.rules, cache_); },
+                  [handle] { MHD_resume_connection(handle); });
+    if (!is_accepted) MHD_resume_connection(handle);
+    return MHD_YES;
   }
 
   static void note(Connection& connection, MHD_Connection* handle, const char* method,
@@ -254,6 +272,7 @@ class HttpDaemon::Impl {
     Connection& connection = connection_of(handle);
     if (!connection.is_begun) return;
     connection.is_begun = false;
+    connection.is_prepared = false;
     connection.client->begins_to_wait();
     --impl.under_way_;
     const bool was_answered = connection.record.status != 0;
@@ -268,6 +287,7 @@ class HttpDaemon::Impl {
   HttpDaemonOptions options_;
   GzipCache cache_;
   WaitingClients clients_;
+  BackgroundJobs jobs_;
   std::atomic<int> under_way_ = 0;
   MHD_Daemon* daemon_ = nullptr;
   int listening_ = -1;
