@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/dem_options.h"
 #include "cli/terminal_progress.h"
+#include "cli/tile_options.h"
 #include "core/errors.h"
 #include "ingest/scan.h"
 #include "tiler/output_folder.h"
@@ -21,6 +22,7 @@ namespace {
 /// The command line; what is not given comes from the settings file, or is the default.
 struct BuildCommand {
   DemOptions dem;
+  TileOptions tiles;
   std::filesystem::path out;
   std::string config;
   bool force = false;
@@ -42,6 +44,8 @@ BuildSettings resolve(const BuildCommand& command) {
   override_with(command.tile_cells, settings.build.tile_cells);
   override_with(command.levels_per_octave, settings.build.levels_per_octave);
   override_with(command.jobs, settings.build.jobs);
+  apply(command.tiles, settings.build.format);
+  apply(command.tiles, settings.drape);
   tiler::check(settings.build);
   if (settings.dem.empty()) {
     throw ConfigError("no DEM given. Name one, or set ingest.dem in the file of --config");
@@ -59,10 +63,19 @@ void report(const tiler::BuildResult& result, const std::filesystem::path& out) 
              result.triangles, result.max_error_m);
 }
 
+/// Null without images.
+std::unique_ptr<TextureSource> open_texture(const ingest::DrapeOptions& drape,
+                                            const ingest::Dem& dem) {
+  if (drape.images.empty()) return nullptr;
+  return ingest::open_drape(drape, dem.place(), dem.heights().shape());
+}
+
 void run(const BuildCommand& command, const CommonOptions& common) {
-  const BuildSettings settings = resolve(command);
+  BuildSettings settings = resolve(command);
   const auto progress = make_progress(common.quiet);
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, *progress);
+  const auto texture = open_texture(settings.drape, *dem);
+  settings.build.texture = texture.get();
   const HeightStatistics statistics = ingest::scan_heights(*dem, *progress);
   tiler::OutputFolder(command.out).claim(command.force);
   viewer::write_viewer(command.out);
@@ -88,6 +101,7 @@ void add_build_command(CLI::App& app, const CommonOptions& common) {
       "--levels-per-octave", command->levels_per_octave,
       "Levels in each doubling of the tolerance, 1 to 4: finer steps between them [1]");
   build->add_option("--jobs", command->jobs, "Threads; 0: one per core [0]");
+  add_tile_options(*build, command->tiles);
   build->add_option("--config", command->config,
                     "TOML file with settings; options on the command line win");
   build->add_flag("--force", command->force,

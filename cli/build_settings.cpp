@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "cli/tile_options.h"
 #include "core/errors.h"
 #include "tiler/whole_file.h"
 
@@ -32,6 +33,7 @@ struct Setting {
   }
 
   std::string text() const { return as<std::string>("a string"); }
+  bool truth() const { return as<bool>("true or false"); }
   int whole_number() const { return static_cast<int>(as<std::int64_t>("a whole number")); }
   double real_number() const {
     const auto value = node.value<double>();
@@ -57,6 +59,14 @@ struct Setting {
   }
 };
 
+/// A setting of [tiles] that is a word, through the same checks as on the command line.
+template <std::optional<std::string> TileOptions::*kOption>
+void read_word(const Setting& setting, BuildSettings& settings) {
+  TileOptions options;
+  options.*kOption = setting.number_or_text();
+  apply(options, settings.build.format);
+}
+
 using Reader = std::function<void(const Setting&, BuildSettings&)>;
 
 // every key of a settings file; config/ explains them
@@ -81,6 +91,23 @@ const std::map<std::string, Reader>& readers() {
       {"build.levels_per_octave",
        [](const Setting& s, BuildSettings& to) { to.build.levels_per_octave = s.whole_number(); }},
       {"build.jobs", [](const Setting& s, BuildSettings& to) { to.build.jobs = s.whole_number(); }},
+      {"tiles.implicit",
+       [](const Setting& s, BuildSettings& to) { to.build.format.is_implicit = s.truth(); }},
+      {"tiles.tileset_tiles",
+       [](const Setting& s, BuildSettings& to) {
+         to.build.format.tiles_per_tileset = s.whole_number();
+       }},
+      {"tiles.compression", read_word<&TileOptions::compression>},
+      {"tiles.positions", read_word<&TileOptions::positions>},
+      {"tiles.material", read_word<&TileOptions::material>},
+      {"tiles.skirts", read_word<&TileOptions::skirts>},
+      {"tiles.colour", read_word<&TileOptions::colour>},
+      {"tiles.attribution", read_word<&TileOptions::attribution>},
+      {"tiles.texture", [](const Setting& s, BuildSettings& to) { to.drape.images = s.texts(); }},
+      {"tiles.texture_format",
+       [](const Setting& s, BuildSettings& to) { to.drape.format = picture_format_of(s.text()); }},
+      {"tiles.texture_px",
+       [](const Setting& s, BuildSettings& to) { to.build.format.texture_px = s.whole_number(); }},
   };
   return known;
 }
@@ -113,6 +140,14 @@ std::string repeatable(const std::string& source) {
   return std::filesystem::absolute(source).lexically_normal().string();
 }
 
+std::string list_of(const std::vector<std::string>& sources) {
+  std::string text = "[";
+  for (const std::string& source : sources) {
+    text += (text.size() > 1 ? ", " : "") + quoted(repeatable(source));
+  }
+  return text + "]";
+}
+
 }  // namespace
 
 void read_settings(const std::filesystem::path& file, BuildSettings& settings) {
@@ -139,11 +174,7 @@ void read_settings(const std::filesystem::path& file, BuildSettings& settings) {
 std::string to_toml(const BuildSettings& settings) {
   std::string text =
       "# Written by terrane build. Repeat with: terrane build --config THIS -o OUT\n";
-  text += "[ingest]\ndem = [";
-  for (std::size_t i = 0; i < settings.dem.size(); ++i) {
-    text += (i > 0 ? ", " : "") + quoted(repeatable(settings.dem[i]));
-  }
-  text += "]\n";
+  text += "[ingest]\ndem = " + list_of(settings.dem) + "\n";
   const ingest::OpenOptions& ingest = settings.ingest;
   if (ingest.band) text += fmt::format("band = {}\n", *ingest.band);
   if (ingest.nodata) text += "nodata = " + quoted(*ingest.nodata) + "\n";
@@ -154,6 +185,14 @@ std::string to_toml(const BuildSettings& settings) {
   text += fmt::format("\n[build]\ntolerance_m = {}\ntile_cells = {}\nlevels_per_octave = {}\n",
                       settings.build.tolerance_m, settings.build.tile_cells,
                       settings.build.levels_per_octave);
+  text += "\n[tiles]\n" + to_toml(settings.build.format);
+  if (!settings.drape.images.empty()) {
+    text += fmt::format("texture = {}\ntexture_format = \"{}\"\n", list_of(settings.drape.images),
+                        word_of(settings.drape.format));
+  }
+  if (!settings.build.format.attribution.empty()) {
+    text += "attribution = " + quoted(settings.build.format.attribution) + "\n";
+  }
   return text;
 }
 

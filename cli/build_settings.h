@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ingest/dem.h"
+#include "ingest/drape.h"
 #include "tiler/build.h"
 
 namespace terrane::cli {
@@ -13,6 +14,7 @@ namespace terrane::cli {
 struct BuildSettings {
   std::vector<std::string> dem;
   ingest::OpenOptions ingest;
+  ingest::DrapeOptions drape;
   tiler::BuildOptions build;
 };
 

@@ -11,7 +11,9 @@
 #include "core/errors.h"
 #include "tiler/build_seam.h"
 #include "tiler/build_tile.h"
+#include "tiler/cut_texture.h"
 #include "tiler/output_folder.h"
+#include "tiler/tile_skirt.h"
 #include "tiler/whole_file.h"
 #include "tiler/write_glb.h"
 #include "tiler/write_tileset.h"
@@ -26,9 +28,10 @@ std::string hash_hex(std::string_view text) {
 }
 
 std::string build_key(const BuildOptions& options, const HeightStatistics& statistics) {
-  return hash_hex(fmt::format("{} {} {} {} {}", TERRANE_GENERATOR, options.tolerance_m,
-                              options.tile_cells, options.levels_per_octave,
-                              statistics.fingerprint));
+  return hash_hex(fmt::format("{} {} {} {} {} {} {}", TERRANE_GENERATOR, options.tolerance_m,
+                              options.tile_cells, options.levels_per_octave, statistics.fingerprint,
+                              key_of(options.format),
+                              options.texture ? options.texture->fingerprint() : ""));
 }
 
 /// Doubles exactly with each octave.
@@ -46,6 +49,21 @@ bool is_mirrored(const WorldFrame& world, GridShape shape) {
   return (at[1].base - at[0].base).cross(at[2].base - at[0].base).dot(at[0].up) > 0;
 }
 
+/// Along the columns, along the rows, and upright, in the middle of some samples.
+Axes axes_of(const WorldFrame& world, const Window& window) {
+  const double c = static_cast<double>(window.column) + static_cast<double>(window.columns - 1) / 2;
+  const double r = static_cast<double>(window.row) + static_cast<double>(window.rows - 1) / 2;
+  const GridPosition probes[] = {{c, r}, {c - 0.5, r}, {c + 0.5, r}, {c, r - 0.5}, {c, r + 0.5}};
+  const auto at = world.plumbs(probes);
+  const Eigen::Vector3d columns = at[2].base - at[1].base, rows = at[4].base - at[3].base;
+  const Eigen::Vector3d up = at[0].up;
+  Axes axes;
+  axes.col(2) = columns.cross(rows).dot(up) > 0 ? up : Eigen::Vector3d(-up);
+  axes.col(0) = (columns - columns.dot(up) * up).normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return axes;
+}
+
 class Build {
  public:
   Build(const HeightSource& heights, const Georeference& place, const HeightStatistics& statistics,
@@ -58,12 +76,14 @@ class Build {
         folder_(out),
         progress_(progress),
         jobs_(options.jobs > 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency())),
+        texture_(options.texture),
         data_set_{.shape = heights.shape(),
                   .heights = statistics,
                   .crs_wkt = place.crs_wkt(),
                   .tile_cells = options.tile_cells,
                   .levels_per_octave = options.levels_per_octave,
                   .tolerance_m = {},
+                  .format = options.format,
                   .key = build_key(options, statistics)} {
     for (int level = 0; level < pyramid_.level_count(); ++level) {
       data_set_.tolerance_m.push_back(tolerance_of_level_m(options, level));
@@ -171,30 +191,57 @@ class Build {
   void write_tile(const TileId& tile, const TileMesh& mesh, std::span<const LatticePoint> targets,
                   std::vector<TileRecord> descendants, std::vector<TileRecord>& records) const {
     if (mesh.triangles.empty()) return;
-    const std::string glb =
-        encode_glb(tile, mesh, targets, lattice_.step_m(tile.level), is_mirrored_);
-    write_whole_file(folder_.glb(tile), glb);
-
     TileRecord record{.tile = tile,
                       .triangles = static_cast<std::int64_t>(mesh.triangles.size()),
-                      .bytes = static_cast<std::int64_t>(glb.size()),
                       .error = mesh.error,
-                      .low = Eigen::Vector3d::Constant(INFINITY),
-                      .high = Eigen::Vector3d::Constant(-INFINITY)};
-    for (const auto points : {std::span<const LatticePoint>(mesh.points), targets}) {
-      for (const LatticePoint& point : points) {
-        const Eigen::Vector3d at = lattice_.world(point, tile.level);
-        record.low = record.low.cwiseMin(at);
-        record.high = record.high.cwiseMax(at);
-      }
-    }
+                      .box = {.axes = axes_of(world_, pyramid_.window(tile))}};
     for (const TileRecord& below : descendants) {
       record.error.max_m = std::max(record.error.max_m, below.error.max_m);
-      record.low = record.low.cwiseMin(below.low);
-      record.high = record.high.cwiseMax(below.high);
+      if (below.tile.level == tile.level - 1) record.box.add(below.box);
     }
+    const TileSkirt skirt = make_skirt(tile, mesh, targets, record.box.axes.col(2));
+    for (const auto points : {std::span<const LatticePoint>(mesh.points), targets,
+                              std::span<const LatticePoint>(skirt.points),
+                              std::span<const LatticePoint>(skirt.targets)}) {
+      for (const LatticePoint& point : points) {
+        record.box.add(lattice_.world(point, tile.level));
+      }
+    }
+    const std::string glb =
+        encode_glb({.id = tile,
+                    .mesh = mesh,
+                    .targets = targets,
+                    .skirt = skirt,
+                    .step_m = lattice_.step_m(tile.level),
+                    .is_mirrored = is_mirrored_,
+                    .tolerance_m = data_set_.tolerance_m[tile.level],
+                    .max_error_m = record.error.max_m,
+                    .heights = data_set_.heights,
+                    .texture = cut_texture(texture_, pyramid_.window(tile), cells_per_texel(tile))},
+                   data_set_.format);
+    write_whole_file(folder_.root() / glb_path(data_set_.format, tile, pyramid_.root_level()), glb);
+    record.skirt_triangles = static_cast<std::int64_t>(skirt.triangles.size());
+    record.bytes = static_cast<std::int64_t>(glb.size());
     records.push_back(record);
     records.insert(records.end(), descendants.begin(), descendants.end());
+  }
+
+  TileSkirt make_skirt(const TileId& tile, const TileMesh& mesh,
+                       std::span<const LatticePoint> targets,
+                       const Eigen::Vector3d& vertical) const {
+    if (!data_set_.format.skirt_m) return {};
+    // neighbours two levels apart are at most five tolerances of the finer one apart
+    const double auto_m = 5 * data_set_.tolerance_m[tile.level];
+    const double depth_m = *data_set_.format.skirt_m > 0 ? *data_set_.format.skirt_m : auto_m;
+    const Eigen::Vector3d down = (vertical.z() > 0 ? -depth_m : depth_m) * vertical;
+    return hang_skirt(pyramid_, tile, mesh, targets,
+                      down.cwiseQuotient(lattice_.step_m(tile.level)));
+  }
+
+  /// Cells that a texel of a tile is wide.
+  double cells_per_texel(const TileId& tile) const {
+    return static_cast<double>(data_set_.tile_cells << pyramid_.octave(tile.level)) /
+           (data_set_.format.texture_px - 1);
   }
 
   BuildResult finish() {
@@ -207,8 +254,12 @@ class Build {
           "the DEM has no three neighbouring samples with heights, so there is nothing to show. "
           "Check --nodata and --band");
     }
-    write_whole_file(folder_.tileset(), tileset_json(data_set_, pyramid_, world_, records));
-    write_whole_file(folder_.summary(), terrane_json(data_set_, lattice_, world_, records));
+    const auto tilesets = tileset_files(data_set_, pyramid_, world_, records);
+    for (const OutputFile& file : tilesets) {
+      write_whole_file(folder_.root() / file.path, file.content);
+    }
+    write_whole_file(folder_.summary(),
+                     terrane_json(data_set_, lattice_, world_, records, tilesets));
     folder_.end();
 
     BuildResult result{.levels = pyramid_.level_count(),
@@ -230,6 +281,7 @@ class Build {
   OutputFolder folder_;
   Progress& progress_;
   int jobs_;
+  const TextureSource* texture_;
   DataSet data_set_;
 };
 
@@ -246,6 +298,12 @@ void check(const BuildOptions& options) {
   if (options.levels_per_octave < 1 || options.levels_per_octave > 4) {
     throw ConfigError(
         fmt::format("--levels-per-octave {}: must be from 1 to 4", options.levels_per_octave));
+  }
+  check(options.format);
+  if (options.format.is_implicit && options.levels_per_octave > 1) {
+    throw ConfigError(
+        "--implicit: has one level in each octave, as an implicit quadtree has. Leave "
+        "--levels-per-octave at 1");
   }
   if (options.jobs < 0) {
     throw ConfigError(fmt::format("--jobs {}: must be 0 (all cores) or more", options.jobs));

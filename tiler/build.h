@@ -7,6 +7,8 @@
 #include "core/height_source.h"
 #include "core/height_statistics.h"
 #include "core/progress.h"
+#include "core/texture_source.h"
+#include "tiler/tile_format.h"
 
 namespace terrane::tiler {
 
@@ -19,6 +21,9 @@ struct BuildOptions {
   int levels_per_octave = 1;
   /// Threads; 0: as many as the machine has cores. Does not change the output.
   int jobs = 0;
+  TileFormat format;
+  /// Draped over the tiles, if any; must outlive the build.
+  const TextureSource* texture = nullptr;
 };
 
 /// \throws ConfigError that names the setting, if one is out of range.

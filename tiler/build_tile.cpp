@@ -135,7 +135,18 @@ class TileBuild {
       places.push_back(vertex.place);
     }
     mesh.normals = terrain_normals(places, frame_, source_.pyramid.octave(tile_.level), samples_);
+    for (std::size_t v = 0; v < places.size(); ++v) {
+      mesh.grounds.push_back(ground_of(places[v], mesh.normals[v]));
+    }
     return mesh;
+  }
+
+  Ground ground_of(const Place& place, const Eigen::Vector3f& normal) const {
+    const double column = hierarchy::column_of(place.plan), row = hierarchy::row_of(place.plan);
+    return {.column = static_cast<float>(column),
+            .row = static_cast<float>(row),
+            .height_m = static_cast<float>(place.height_m + frame_.drop_m(column, row)),
+            .slope = normal.dot(frame_.plumb(column, row).up.cast<float>())};
   }
 
   /// The result, and the finer level on its way to it.

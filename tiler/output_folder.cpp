@@ -18,21 +18,38 @@ bool holds_nothing(const fs::path& folder) {
   return fs::directory_iterator(folder) == fs::directory_iterator();
 }
 
-bool is_complete(const nlohmann::json& tile, const fs::path& root) {
-  std::error_code error;
-  const auto bytes = tile.at("extras").at("terrane").at("bytes").get<std::uintmax_t>();
-  const fs::path file = root / tile.at("content").at("uri").get<std::string>();
-  if (fs::file_size(file, error) != bytes || error) return false;
-  const auto children = tile.value("children", nlohmann::json::array());
-  return std::all_of(children.begin(), children.end(),
-                     [&](const nlohmann::json& child) { return is_complete(child, root); });
+/// Files of some kind below a folder of an output.
+struct Found {
+  std::uintmax_t files = 0, bytes = 0;
+
+  void count(const fs::path& below, std::string_view extension) {
+    std::error_code error;
+    for (const auto& entry : fs::recursive_directory_iterator(below, error)) {
+      if (!entry.is_regular_file(error) || entry.path().extension() != extension) continue;
+      ++files;
+      bytes += entry.file_size(error);
+    }
+  }
+};
+
+/// \param summary  terrane.json
+bool is_complete(const nlohmann::json& summary, const fs::path& root) {
+  Found stated, tiles;
+  for (const auto& level : summary.at("levels")) {
+    stated.files += level.at("tiles").get<std::uintmax_t>();
+    stated.bytes += level.at("bytes").get<std::uintmax_t>();
+  }
+  tiles.count(root / "tiles", ".glb");
+  tiles.count(root / "content", ".glb");
+  Found tilesets{1, fs::file_size(root / "tileset.json")};
+  tilesets.count(root / "tilesets", ".json");
+  tilesets.count(root / "subtrees", ".subtree");
+  return tiles.files == stated.files && tiles.bytes == stated.bytes &&
+         tilesets.files == summary.at("tilesets").at("files") &&
+         tilesets.bytes == summary.at("tilesets").at("bytes");
 }
 
 }  // namespace
-
-fs::path OutputFolder::glb(const TileId& tile) const {
-  return root_ / "tiles" / (path_of(tile) + ".glb");
-}
 
 fs::path OutputFolder::finished_tile(const TileId& tile) const {
   return work() / (path_of(tile) + ".tile");
@@ -69,9 +86,8 @@ void OutputFolder::claim(bool force) const {
 
 std::string OutputFolder::finished_key() const {
   try {
-    const auto tree = nlohmann::json::parse(read_whole_file(tileset()));
-    if (!is_complete(tree.at("root"), root_)) return {};
-    return nlohmann::json::parse(read_whole_file(summary())).at("key").get<std::string>();
+    const auto json = nlohmann::json::parse(read_whole_file(summary()));
+    return is_complete(json, root_) ? json.at("key").get<std::string>() : std::string();
   } catch (const std::exception&) {
     return {};  // nothing there, or not whole: the same to whoever asks
   }
@@ -83,7 +99,9 @@ void OutputFolder::begin(const std::string& key) const {
   if (fs::exists(key_file, error) && read_whole_file(key_file) == key) return;
   fs::remove(summary(), error);
   fs::remove(tileset(), error);
-  fs::remove_all(root_ / "tiles", error);
+  for (const char* ours : {"tiles", "content", "tilesets", "subtrees"}) {
+    fs::remove_all(root_ / ours, error);
+  }
   fs::remove_all(work(), error);
   write_whole_file(key_file, key);
 }

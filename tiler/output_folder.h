@@ -14,7 +14,7 @@ class OutputFolder {
  public:
   explicit OutputFolder(std::filesystem::path root) : root_(std::move(root)) {}
 
-  std::filesystem::path glb(const TileId& tile) const;
+  const std::filesystem::path& root() const { return root_; }
   std::filesystem::path finished_tile(const TileId& tile) const;
   std::filesystem::path finished_seam(const SeamId& seam) const;
   std::filesystem::path tileset() const { return root_ / "tileset.json"; }
@@ -25,8 +25,8 @@ class OutputFolder {
   ///         and \p force is not set. Nothing is changed then.
   void claim(bool force) const;
 
-  /// The key of the data set that lies here complete, every tile with the size that tileset.json
-  /// states; empty if there is none.
+  /// The key of the data set that lies here complete, every tile and tileset with the size that
+  /// terrane.json states; empty if there is none.
   std::string finished_key() const;
 
   /// Keeps the unfinished work of an earlier run if it has the same key; else clears the way:

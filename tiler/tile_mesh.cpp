@@ -5,7 +5,7 @@
 namespace terrane::tiler {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x31656c6974727274;  // "trrtile1"
+constexpr std::uint64_t kMagic = 0x32656c6974727274;  // "trrtile2"
 
 }  // namespace
 
@@ -16,6 +16,7 @@ void write_finished_tile(const FinishedTile& tile, const std::filesystem::path& 
   writer.add(tile.mesh.points);
   writer.add(tile.mesh.samples);
   writer.add(tile.mesh.normals);
+  writer.add(tile.mesh.grounds);
   writer.add(tile.mesh.triangles);
   writer.add(tile.mesh.error);
   writer.write(file);
@@ -29,6 +30,7 @@ FinishedTile read_finished_tile(const std::filesystem::path& file) {
   tile.mesh.points = reader.get_vector<LatticePoint>();
   tile.mesh.samples = reader.get_vector<hierarchy::SampleId>();
   tile.mesh.normals = reader.get_vector<Eigen::Vector3f>();
+  tile.mesh.grounds = reader.get_vector<Ground>();
   tile.mesh.triangles = reader.get_vector<hierarchy::Corners>();
   tile.mesh.error = reader.get<MeasuredError>();
   return tile;

@@ -7,6 +7,7 @@
 #include "core/lattice_point.h"
 #include "hierarchy/mesh/grid_triangles.h"
 #include "hierarchy/mesh/halfedge_mesh.h"
+#include "tiler/oriented_box.h"
 #include "tiler/tile_id.h"
 
 namespace terrane::tiler {
@@ -18,11 +19,19 @@ struct MeasuredError {
   std::int64_t samples = 0;
 };
 
+/// Where a vertex stands on the DEM, for textures and colours.
+struct Ground {
+  float column = 0, row = 0;  ///< cells from the tile's first sample
+  float height_m = 0;         ///< over the ellipsoid
+  float slope = 0;            ///< cosine of the angle between normal and plumb line
+};
+
 /// A finished mesh of one tile at one level: just what the next level and the writer need.
 struct TileMesh {
-  std::vector<LatticePoint> points;           ///< on the lattice of the tile's level
-  std::vector<hierarchy::SampleId> samples;   ///< of outline and seam vertices; {-1, -1} inside
-  std::vector<Eigen::Vector3f> normals;       ///< unit, in the world
+  std::vector<LatticePoint> points;          ///< on the lattice of the tile's level
+  std::vector<hierarchy::SampleId> samples;  ///< of outline and seam vertices; {-1, -1} inside
+  std::vector<Eigen::Vector3f> normals;      ///< unit, in the world
+  std::vector<Ground> grounds;
   std::vector<hierarchy::Corners> triangles;  ///< counter-clockwise with rows downward
   MeasuredError error;
 };
@@ -31,9 +40,10 @@ struct TileMesh {
 struct TileRecord {
   TileId tile;
   std::int64_t triangles = 0;
+  std::int64_t skirt_triangles = 0;
   std::int64_t bytes = 0;
-  MeasuredError error;        ///< max_m: at least the children's
-  Eigen::Vector3d low, high;  ///< box of the tile, its morphed places and its children's boxes
+  MeasuredError error;  ///< max_m: at least the children's
+  OrientedBox box;      ///< of the tile, its morphed places, its skirts and its children's boxes
 };
 
 /// A tile whose descendants are written: what a build keeps in its work folder to go on from.

@@ -1,316 +1,191 @@
 #include "tiler/write_glb.h"
 
-#include <fmt/format.h>
-#include <meshoptimizer.h>
-#include <tiny_gltf.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "core/errors.h"
+#include "tiler/draco_mesh.h"
+#include "tiler/glb_arrays.h"
+#include "tiler/glb_buffers.h"
 
 namespace terrane::tiler {
 namespace {
 
-constexpr const char* kMeshopt = "EXT_meshopt_compression";
-constexpr const char* kQuantization = "KHR_mesh_quantization";
+using nlohmann::ordered_json;
 
-using Steps = std::array<std::int32_t, 3>;
-/// Four and not three: meshopt codes vertices of whole words.
-using Short3 = std::array<std::int16_t, 4>;
-using Byte3 = std::array<std::int8_t, 4>;
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
 
-/// What goes into the buffers, in the order of the vertex cache.
-struct Attributes {
-  LatticePoint origin;
-  std::vector<Steps> positions;
-  std::vector<Steps> morphs;
-  std::vector<Byte3> normals;
-  std::vector<std::uint32_t> indices;
-};
+ordered_json number_of(const LatticePoint& p) { return {p.i, p.j, p.k}; }
 
-LatticePoint middle_of(std::span<const LatticePoint> points) {
-  LatticePoint low = points.front(), high = low;
-  for (const LatticePoint& p : points) {
-    low = {std::min(low.i, p.i), std::min(low.j, p.j), std::min(low.k, p.k)};
-    high = {std::max(high.i, p.i), std::max(high.j, p.j), std::max(high.k, p.k)};
-  }
-  return {(low.i + high.i) / 2, (low.j + high.j) / 2, (low.k + high.k) / 2};
+ordered_json describe(const GlbTile& tile, const LatticePoint& origin) {
+  ordered_json extras;
+  extras["terrane"] = {{"level", tile.id.level},
+                       {"x", tile.id.x},
+                       {"y", tile.id.y},
+                       {"origin", number_of(origin)},
+                       {"tolerance_m", tile.tolerance_m},
+                       {"max_error_m", tile.max_error_m}};
+  return extras;
 }
 
-// the filter's mantissas have 24 bits, and floats hold every integer of that size
-constexpr std::int64_t kMostSteps = (1 << 23) - 1;
-
-std::int32_t step_of(std::int64_t value, const TileId& tile) {
-  if (std::abs(value) > kMostSteps) {
-    throw OutputError(fmt::format(
-        "tile {}: spans more than 24 bits of lattice steps. This is a defect of terrane; please "
-        "report it with the DEM's size and CRS",
-        path_of(tile)));
-  }
-  return static_cast<std::int32_t>(value);
+ordered_json node_at(const LatticePoint& origin, const Eigen::Vector3d& step_m, bool is_scaled) {
+  ordered_json node{{"mesh", 0}};
+  if (is_scaled) node["scale"] = {step_m.x(), step_m.z(), step_m.y()};
+  node["translation"] = {static_cast<double>(origin.i) * step_m.x(),
+                         static_cast<double>(origin.k) * step_m.z(),
+                         static_cast<double>(-origin.j) * step_m.y()};
+  return node;
 }
 
-/// b - a in glTF's axes: x east, y up, z south.
-Steps y_up(const LatticePoint& a, const LatticePoint& b, const TileId& tile) {
-  return {step_of(b.i - a.i, tile), step_of(b.k - a.k, tile), step_of(a.j - b.j, tile)};
-}
-
-bool fits_16_bits(const std::vector<Steps>& values) {
-  return std::ranges::all_of(values, [](const Steps& v) {
-    return std::ranges::all_of(v, [](std::int32_t c) { return std::int16_t(c) == c; });
-  });
-}
-
-/// Normals are divided by the node's scale when drawn: multiply first.
-Byte3 normal_bytes(const Eigen::Vector3f& normal, const Eigen::Vector3d& step_m) {
-  const Eigen::Vector3d n = normal.cast<double>().cwiseProduct(step_m).normalized() * 127;
-  const auto byte = [](double v) { return static_cast<std::int8_t>(std::lround(v)); };
-  return {byte(n.x()), byte(n.z()), byte(-n.y()), 0};
-}
-
-std::vector<std::uint32_t> cached_indices(const TileMesh& mesh, bool is_mirrored) {
-  std::vector<std::uint32_t> indices;
-  indices.reserve(mesh.triangles.size() * 3);
-  for (auto [a, b, c] : mesh.triangles) {
-    if (is_mirrored) std::swap(b, c);
-    indices.insert(indices.end(), {a, b, c});
-  }
-  meshopt_optimizeVertexCache(indices.data(), indices.data(), indices.size(), mesh.points.size());
-  return indices;
-}
-
-Attributes arrange(const TileId& tile, const TileMesh& mesh, std::span<const LatticePoint> targets,
-                   const Eigen::Vector3d& step_m, bool is_mirrored) {
-  Attributes result{.origin = middle_of(mesh.points)};
-  result.indices = cached_indices(mesh, is_mirrored);
-  std::vector<std::uint32_t> remap(mesh.points.size());
-  const std::size_t count = meshopt_optimizeVertexFetchRemap(
-      remap.data(), result.indices.data(), result.indices.size(), mesh.points.size());
-  for (std::uint32_t& i : result.indices) i = remap[i];
-
-  result.positions.resize(count);
-  result.morphs.resize(count);
-  result.normals.resize(count);
-  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    if (remap[v] == ~std::uint32_t{0}) continue;
-    result.positions[remap[v]] = y_up(result.origin, mesh.points[v], tile);
-    result.morphs[remap[v]] = y_up(mesh.points[v], targets[v], tile);
-    result.normals[remap[v]] = normal_bytes(mesh.normals[v], step_m);
-  }
-  return result;
-}
-
-/// Collects buffer views: the compressed bytes and what they describe.
-class Buffers {
+/// The document of a tile, part by part.
+class Document {
  public:
-  template <class T>
-  int add_vertices(const std::vector<T>& values, const char* filter = nullptr) {
-    std::vector<unsigned char> coded(meshopt_encodeVertexBufferBound(values.size(), sizeof(T)));
-    coded.resize(meshopt_encodeVertexBuffer(coded.data(), coded.size(), values.data(),
-                                            values.size(), sizeof(T)));
-    return add(coded, values.size(), sizeof(T), "ATTRIBUTES", true, filter);
-  }
+  Document(const GlbTile& tile, const TileFormat& format)
+      : tile_(tile),
+        format_(format),
+        buffers_(format.compression == Compression::kMeshopt),
+        origin_(origin_of(tile.mesh)) {}
 
-  /// Whole numbers: as 16 bits where they fit, else as floats. A float is sent as the exponential
-  /// filter's word (exponent 0 and 24 bits of mantissa: the number itself), which codes as well as
-  /// an integer.
-  int add_steps(const std::vector<Steps>& values, bool is_short) {
-    if (is_short) {
-      std::vector<Short3> shorts;
-      for (const Steps& v : values) {
-        shorts.push_back({static_cast<std::int16_t>(v[0]), static_cast<std::int16_t>(v[1]),
-                          static_cast<std::int16_t>(v[2]), 0});
-      }
-      return add_vertices(shorts);
+  std::string encode() {
+    const bool is_scaled = format_.positions == Positions::kLattice;
+    ordered_json mesh;
+    mesh["primitives"].push_back(primitive(arrange_surface(tile_, format_)));
+    if (!tile_.skirt.triangles.empty()) {
+      mesh["primitives"].push_back(primitive(arrange_skirt(tile_, format_)));
+      mesh["primitives"][1]["extras"]["terrane"]["skirt"] = true;
     }
-    std::vector<std::array<std::uint32_t, 3>> words;
-    for (const Steps& v : values) {
-      constexpr std::uint32_t kMantissa = 0xffffff;
-      words.push_back({static_cast<std::uint32_t>(v[0]) & kMantissa,
-                       static_cast<std::uint32_t>(v[1]) & kMantissa,
-                       static_cast<std::uint32_t>(v[2]) & kMantissa});
-    }
-    return add_vertices(words, "EXPONENTIAL");
-  }
+    if (has_targets()) mesh["weights"] = {0};
+    mesh["extras"] = describe(tile_, origin_);
+    const ordered_json material = make_material();  // puts the texture into the buffer
 
-  int add_indices(const std::vector<std::uint32_t>& indices, std::size_t vertices,
-                  std::size_t bytes_per_index) {
-    std::vector<unsigned char> coded(meshopt_encodeIndexBufferBound(indices.size(), vertices));
-    coded.resize(
-        meshopt_encodeIndexBuffer(coded.data(), coded.size(), indices.data(), indices.size()));
-    return add(coded, indices.size(), bytes_per_index, "TRIANGLES", false, nullptr);
+    ordered_json json;
+    json["asset"] = {{"version", "2.0"}, {"generator", TERRANE_GENERATOR}};
+    if (!format_.attribution.empty()) json["asset"]["copyright"] = format_.attribution;
+    list_extensions(json);
+    json["scene"] = 0;
+    json["scenes"] = {{{"nodes", {0}}}};
+    json["nodes"] = {node_at(origin_, tile_.step_m, is_scaled)};
+    json["meshes"] = {mesh};
+    json["materials"] = {material};
+    if (tile_.texture.is_there()) add_texture(json);
+    json["accessors"] = buffers_.accessors();
+    json["bufferViews"] = buffers_.views();
+    json["buffers"] = buffers_.buffers();
+    return pack(json.dump());
   }
-
-  nlohmann::ordered_json views() const { return views_; }
-  std::size_t fallback_bytes() const { return fallback_; }
-  std::string& bytes() { return bytes_; }
 
  private:
-  int add(const std::vector<unsigned char>& coded, std::size_t count, std::size_t stride,
-          const char* mode, bool is_vertices, const char* filter) {
-    nlohmann::ordered_json view{{"buffer", 1}};
-    view["byteOffset"] = fallback_;
-    view["byteLength"] = count * stride;
-    if (is_vertices) view["byteStride"] = stride;
-    view["target"] =
-        is_vertices ? TINYGLTF_TARGET_ARRAY_BUFFER : TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
-    view["extensions"][kMeshopt] = {{"buffer", 0},
-                                    {"byteOffset", bytes_.size()},
-                                    {"byteLength", coded.size()},
-                                    {"byteStride", stride},
-                                    {"mode", mode},
-                                    {"count", count}};
-    if (filter != nullptr) view["extensions"][kMeshopt]["filter"] = filter;
-    views_.push_back(std::move(view));
-    fallback_ += (count * stride + 3) / 4 * 4;
-    bytes_.append(coded.begin(), coded.end());
-    bytes_.resize((bytes_.size() + 3) / 4 * 4);
-    return static_cast<int>(views_.size()) - 1;
+  bool has_targets() const { return format_.compression != Compression::kDraco; }
+
+  ordered_json primitive(const GlbArrays& arrays) {
+    ordered_json primitive;
+    if (format_.compression == Compression::kDraco) {
+      primitive = draco_primitive(encode_draco(arrays), arrays.indices.size());
+    } else {
+      ordered_json attributes;
+      attributes["POSITION"] = buffers_.add_vertices(arrays.positions);
+      attributes["NORMAL"] = buffers_.add_vertices(arrays.normals);
+      attributes["_MORPH"] = buffers_.add_vertices(arrays.morphs);
+      if (arrays.places) attributes["TEXCOORD_0"] = buffers_.add_vertices(*arrays.places);
+      if (arrays.colours) attributes["COLOR_0"] = buffers_.add_vertices(*arrays.colours);
+      primitive["attributes"] = attributes;
+      primitive["targets"] = {{{"POSITION", attributes["_MORPH"]}}};
+      primitive["indices"] = buffers_.add_triangles(arrays.indices, arrays.positions.count);
+    }
+    primitive["material"] = 0;
+    primitive["mode"] = 4;
+    return primitive;
   }
 
-  nlohmann::ordered_json views_ = nlohmann::ordered_json::array();
-  std::string bytes_;
-  std::size_t fallback_ = 0;
+  /// Draco changes the order of the vertices, so that a morph target beside it would not fit: the
+  /// displacement is the attribute _MORPH alone.
+  ordered_json draco_primitive(const DracoMesh& mesh, std::size_t indices) {
+    ordered_json primitive, coded;
+    coded["bufferView"] = buffers_.add_raw(mesh.bytes);
+    int id = 0;
+    for (const auto& [name, values] : mesh.attributes) {
+      primitive["attributes"][name] = buffers_.add_elsewhere(values, mesh.vertices);
+      coded["attributes"][name] = id++;
+    }
+    primitive["indices"] = buffers_.add_elsewhere(indices, mesh.vertices);
+    primitive["extensions"][kDraco] = coded;
+    return primitive;
+  }
+
+  ordered_json make_material() {
+    ordered_json material;
+    ordered_json& surface = material["pbrMetallicRoughness"];
+    const bool has_colours = tile_.texture.is_there() || format_.colour != Colour::kNone;
+    if (!has_colours) surface["baseColorFactor"] = {0.62, 0.6, 0.55, 1};
+    if (tile_.texture.is_there()) surface["baseColorTexture"]["index"] = 0;
+    surface["metallicFactor"] = 0;
+    surface["roughnessFactor"] = 1;
+    if (format_.material == Material::kUnlit) {
+      material["extensions"]["KHR_materials_unlit"] = ordered_json::object();
+    }
+    return material;
+  }
+
+  bool is_webp() const { return tile_.texture.media_type == "image/webp"; }
+
+  void add_texture(ordered_json& json) {
+    json["images"] = {{{"bufferView", buffers_.add_raw(tile_.texture.bytes)},
+                       {"mimeType", tile_.texture.media_type}}};
+    constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kClampToEdge = 33071;
+    json["samplers"] = {{{"magFilter", kLinear},
+                         {"minFilter", kLinearMipmapLinear},
+                         {"wrapS", kClampToEdge},
+                         {"wrapT", kClampToEdge}}};
+    ordered_json texture{{"sampler", 0}};
+    if (is_webp()) {
+      texture["extensions"]["EXT_texture_webp"]["source"] = 0;
+    } else {
+      texture["source"] = 0;
+    }
+    json["textures"] = {texture};
+  }
+
+  void list_extensions(ordered_json& json) const {
+    std::vector<std::string> used, required;
+    if (format_.positions == Positions::kLattice) required.push_back("KHR_mesh_quantization");
+    if (format_.compression == Compression::kMeshopt) required.push_back("EXT_meshopt_compression");
+    if (format_.compression == Compression::kDraco) required.push_back(kDraco);
+    if (tile_.texture.is_there() && is_webp()) required.push_back("EXT_texture_webp");
+    used = required;
+    if (format_.material == Material::kUnlit) used.push_back("KHR_materials_unlit");
+    if (!used.empty()) json["extensionsUsed"] = used;
+    if (!required.empty()) json["extensionsRequired"] = required;
+  }
+
+  std::string pack(std::string json) const {
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const std::string& binary = buffers_.bytes();
+    std::string glb = "glTF";
+    append_word(glb, 2);
+    append_word(glb, 12 + 8 + json.size() + 8 + binary.size());
+    append_word(glb, json.size());
+    glb += "JSON" + json;
+    append_word(glb, binary.size());
+    glb += std::string("BIN\0", 4) + binary;
+    return glb;
+  }
+
+  static void append_word(std::string& bytes, std::size_t value) {
+    const auto word = static_cast<std::uint32_t>(value);
+    char raw[4];
+    std::memcpy(raw, &word, 4);
+    bytes.append(raw, 4);
+  }
+
+  const GlbTile& tile_;
+  const TileFormat& format_;
+  GlbBuffers buffers_;
+  LatticePoint origin_;
 };
-
-int add_accessor(tinygltf::Model& model, int view, std::size_t count, int component, int type) {
-  tinygltf::Accessor accessor;
-  accessor.bufferView = view;
-  accessor.componentType = component;
-  accessor.type = type;
-  accessor.count = count;
-  model.accessors.push_back(accessor);
-  return static_cast<int>(model.accessors.size()) - 1;
-}
-
-/// An accessor of whole numbers, with its bounds.
-int add_steps(tinygltf::Model& model, Buffers& buffers, const std::vector<Steps>& values) {
-  const bool is_short = fits_16_bits(values);
-  const int added = add_accessor(
-      model, buffers.add_steps(values, is_short), values.size(),
-      is_short ? TINYGLTF_COMPONENT_TYPE_SHORT : TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto [low, high] =
-        std::ranges::minmax(values, {}, [axis](const Steps& v) { return v[axis]; });
-    model.accessors[added].minValues.push_back(low[axis]);
-    model.accessors[added].maxValues.push_back(high[axis]);
-  }
-  return added;
-}
-
-tinygltf::Value number(std::int64_t value) { return tinygltf::Value(static_cast<int>(value)); }
-
-tinygltf::Value describe(const TileId& tile, const LatticePoint& origin) {
-  tinygltf::Value::Object own;
-  own["level"] = number(tile.level);
-  own["x"] = number(tile.x);
-  own["y"] = number(tile.y);
-  own["origin"] =
-      tinygltf::Value(tinygltf::Value::Array{number(origin.i), number(origin.j), number(origin.k)});
-  tinygltf::Value::Object extras;
-  extras["terrane"] = tinygltf::Value(own);
-  return tinygltf::Value(extras);
-}
-
-void add_node(tinygltf::Model& model, const LatticePoint& origin, const Eigen::Vector3d& step_m) {
-  tinygltf::Node node;
-  node.mesh = 0;
-  node.scale = {step_m.x(), step_m.z(), step_m.y()};
-  node.translation = {static_cast<double>(origin.i) * step_m.x(),
-                      static_cast<double>(origin.k) * step_m.z(),
-                      static_cast<double>(-origin.j) * step_m.y()};
-  model.nodes.push_back(node);
-  model.scenes.emplace_back().nodes = {0};
-  model.defaultScene = 0;
-}
-
-void add_material(tinygltf::Model& model) {
-  tinygltf::Material material;
-  material.pbrMetallicRoughness.baseColorFactor = {0.62, 0.6, 0.55, 1};
-  material.pbrMetallicRoughness.metallicFactor = 0;
-  material.pbrMetallicRoughness.roughnessFactor = 1;
-  model.materials.push_back(material);
-}
-
-tinygltf::Model model_of(const TileId& tile, const Attributes& attributes, Buffers& buffers,
-                         const Eigen::Vector3d& step_m) {
-  const std::size_t vertices = attributes.positions.size();
-  const bool is_small = vertices <= 65535;
-  tinygltf::Model model;
-  model.asset.version = "2.0";
-  model.asset.generator = "terrane";
-  model.extensionsUsed = model.extensionsRequired = {kQuantization, kMeshopt};
-  add_node(model, attributes.origin, step_m);
-  add_material(model);
-
-  tinygltf::Primitive primitive;
-  primitive.mode = TINYGLTF_MODE_TRIANGLES;
-  primitive.material = 0;
-  const int position = add_steps(model, buffers, attributes.positions);
-  const int morph = add_steps(model, buffers, attributes.morphs);
-  const int normal = add_accessor(model, buffers.add_vertices(attributes.normals), vertices,
-                                  TINYGLTF_COMPONENT_TYPE_BYTE, TINYGLTF_TYPE_VEC3);
-  model.accessors[normal].normalized = true;
-  primitive.indices = add_accessor(
-      model, buffers.add_indices(attributes.indices, vertices, is_small ? 2 : 4),
-      attributes.indices.size(),
-      is_small ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT : TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-      TINYGLTF_TYPE_SCALAR);
-  primitive.attributes = {{"POSITION", position}, {"NORMAL", normal}, {"_MORPH", morph}};
-  primitive.targets = {{{"POSITION", morph}}};
-
-  tinygltf::Mesh mesh;
-  mesh.primitives = {primitive};
-  mesh.weights = {0};
-  mesh.extras = describe(tile, attributes.origin);
-  model.meshes.push_back(mesh);
-  return model;
-}
-
-void append_word(std::string& bytes, std::size_t value) {
-  const auto word = static_cast<std::uint32_t>(value);
-  char raw[4];
-  std::memcpy(raw, &word, 4);
-  bytes.append(raw, 4);
-}
-
-std::string pack(std::string json, const std::string& binary) {
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  std::string glb = "glTF";
-  append_word(glb, 2);
-  append_word(glb, 12 + 8 + json.size() + 8 + binary.size());
-  append_word(glb, json.size());
-  glb += "JSON" + json;
-  append_word(glb, binary.size());
-  glb += std::string("BIN\0", 4) + binary;
-  return glb;
-}
 
 }  // namespace
 
-std::string encode_glb(const TileId& tile, const TileMesh& mesh,
-                       std::span<const LatticePoint> targets, const Eigen::Vector3d& step_m,
-                       bool is_mirrored) {
-  const Attributes attributes = arrange(tile, mesh, targets, step_m, is_mirrored);
-  Buffers buffers;
-  const tinygltf::Model model = model_of(tile, attributes, buffers, step_m);
-  std::ostringstream text;
-  tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, text, /*prettyPrint=*/false,
-                                              /*writeBinary=*/false);
-
-  // tinygltf 2.7 knows neither extensions of buffer views nor a buffer that is not stored
-  auto json = nlohmann::ordered_json::parse(text.str());
-  json["bufferViews"] = buffers.views();
-  nlohmann::ordered_json fallback{{"byteLength", buffers.fallback_bytes()}};
-  fallback["extensions"][kMeshopt]["fallback"] = true;
-  json["buffers"] = {{{"byteLength", buffers.bytes().size()}}, fallback};
-  return pack(json.dump(), buffers.bytes());
+std::string encode_glb(const GlbTile& tile, const TileFormat& format) {
+  return Document(tile, format).encode();
 }
 
 }  // namespace terrane::tiler

@@ -3,21 +3,34 @@
 #include <span>
 #include <string>
 
+#include "core/height_statistics.h"
 #include "core/lattice_point.h"
+#include "tiler/cut_texture.h"
+#include "tiler/tile_format.h"
 #include "tiler/tile_id.h"
 #include "tiler/tile_mesh.h"
+#include "tiler/tile_skirt.h"
 
 namespace terrane::tiler {
 
+/// A tile that is ready to be written.
+struct GlbTile {
+  TileId id;
+  const TileMesh& mesh;
+  std::span<const LatticePoint> targets;  ///< of each vertex at t = 1, in steps of its own level
+  TileSkirt skirt;                        ///< may be empty
+  Eigen::Vector3d step_m;                 ///< east, north, up steps of the tile's level
+  bool is_mirrored = false;  ///< the grid runs clockwise in the world: triangles are turned
+  double tolerance_m = 0;
+  double max_error_m = 0;    ///< at least its children's
+  HeightStatistics heights;  ///< of the DEM, for colours
+  TileTexture texture;       ///< may be empty
+};
+
 /// Encodes a tile as a binary glTF as docs/formats.md describes it.
 ///
-/// \param targets      place of each vertex at t = 1, in steps of the tile's own level.
-/// \param step_m       east, north, up steps of the tile's level.
-/// \param is_mirrored  the grid runs clockwise in the world: triangles are turned.
 /// \pre the tile has triangles; positions and displacements fit 24 bits.
 /// \throws OutputError if they do not (the lattice was chosen too fine).
-std::string encode_glb(const TileId& tile, const TileMesh& mesh,
-                       std::span<const LatticePoint> targets, const Eigen::Vector3d& step_m,
-                       bool is_mirrored);
+std::string encode_glb(const GlbTile& tile, const TileFormat& format);
 
 }  // namespace terrane::tiler

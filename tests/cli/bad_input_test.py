@@ -74,6 +74,21 @@ class BadInput(unittest.TestCase):
     def test_negative_tolerance(self):
         self.refuse([self.good, "--tolerance", "-1"], USAGE, "--tolerance")
 
+    def test_formats_that_do_not_exist(self):
+        self.refuse([self.good, "--compression", "zip"], USAGE, "--compression zip", "meshopt")
+        self.refuse([self.good, "--skirts", "-3"], USAGE, "--skirts -3", "auto")
+        self.refuse([self.good, "--implicit", "--levels-per-octave", "2"], USAGE, "--implicit")
+
+    def test_a_texture_that_is_not_there(self):
+        self.refuse([self.good, "--texture", self.folder / "gone.tif"], INPUT, "gone.tif")
+
+    def test_a_texture_that_is_elsewhere(self):
+        texture = self.folder / "far.ppm"
+        texture.write_bytes(b"P6 2 2 255\n" + bytes(12))
+        (self.folder / "far.wld").write_text("10\n0\n0\n-10\n900000\n900000\n")
+        self.refuse([self.good, "--texture", texture], INPUT, "far.ppm",
+                    "does not lie over the DEM")
+
     def test_unknown_vertical_unit(self):
         self.refuse([self.good, "--vertical-unit", "furlong"], USAGE, "furlong", "foot")
 

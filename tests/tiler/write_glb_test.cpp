@@ -20,6 +20,12 @@ TileMesh square() {
   return mesh;
 }
 
+GlbTile tile_of(const TileMesh& mesh, const TileId& id = {0, 0, 0},
+                const Eigen::Vector3d& step_m = {1, 1, 1}) {
+  return {
+      .id = id, .mesh = mesh, .targets = mesh.points, .skirt = {}, .step_m = step_m, .texture = {}};
+}
+
 std::uint32_t word_at(const std::string& bytes, std::size_t at) {
   std::uint32_t word;
   std::memcpy(&word, bytes.data() + at, 4);
@@ -32,7 +38,7 @@ nlohmann::json json_of(const std::string& glb) {
 
 TEST(EncodeGlb, HeaderStatesTheLengthsOfFileAndChunks) {
   const TileMesh mesh = square();
-  const std::string glb = encode_glb({0, 3, 4}, mesh, mesh.points, {0.5, 0.5, 0.25}, false);
+  const std::string glb = encode_glb(tile_of(mesh, {0, 3, 4}, {0.5, 0.5, 0.25}), {});
   EXPECT_EQ(glb.substr(0, 4), "glTF");
   EXPECT_EQ(word_at(glb, 4), 2U);
   EXPECT_EQ(word_at(glb, 8), glb.size());
@@ -43,7 +49,7 @@ TEST(EncodeGlb, HeaderStatesTheLengthsOfFileAndChunks) {
 
 TEST(EncodeGlb, NodePutsTheOriginWhereItLiesInTheWorldYUp) {
   const TileMesh mesh = square();
-  const auto json = json_of(encode_glb({2, 3, 4}, mesh, mesh.points, {0.5, 0.5, 0.25}, false));
+  const auto json = json_of(encode_glb(tile_of(mesh, {2, 3, 4}, {0.5, 0.5, 0.25}), {}));
   const auto extras = json["meshes"][0]["extras"]["terrane"];
   EXPECT_EQ(extras["level"], 2);
   EXPECT_EQ(extras["origin"], (std::vector<int>{1005, 1995, 303}));
@@ -53,14 +59,13 @@ TEST(EncodeGlb, NodePutsTheOriginWhereItLiesInTheWorldYUp) {
 
 TEST(EncodeGlb, MorphTargetAndAttributeAreOneAccessor) {
   const TileMesh mesh = square();
-  const auto primitive = json_of(
-      encode_glb({0, 0, 0}, mesh, mesh.points, {1, 1, 1}, false))["meshes"][0]["primitives"][0];
+  const auto primitive = json_of(encode_glb(tile_of(mesh), {}))["meshes"][0]["primitives"][0];
   EXPECT_EQ(primitive["targets"][0]["POSITION"], primitive["attributes"]["_MORPH"]);
 }
 
 TEST(EncodeGlb, AccessorBoundsAreThoseOfThePositions) {
   const TileMesh mesh = square();
-  const auto json = json_of(encode_glb({0, 0, 0}, mesh, mesh.points, {1, 1, 1}, false));
+  const auto json = json_of(encode_glb(tile_of(mesh), {}));
   const auto position =
       json["accessors"]
           [json["meshes"][0]["primitives"][0]["attributes"]["POSITION"].get<std::size_t>()];
@@ -72,7 +77,7 @@ TEST(EncodeGlb, PositionsBeyondSixteenBitsAreFloats) {
   constexpr int kShort = 5122, kFloat = 5126;
   TileMesh mesh = square();
   const auto type = [&](const char* name) {
-    const auto json = json_of(encode_glb({0, 0, 0}, mesh, mesh.points, {1, 1, 1}, false));
+    const auto json = json_of(encode_glb(tile_of(mesh), {}));
     const auto& attributes = json["meshes"][0]["primitives"][0]["attributes"];
     return json["accessors"][attributes[name].get<std::size_t>()]["componentType"];
   };
@@ -86,7 +91,9 @@ TEST(EncodeGlb, RefusesADisplacementThatTwentyFourBitsCannotHold) {
   const TileMesh mesh = square();
   std::vector<LatticePoint> targets = mesh.points;
   targets[2].i += 1 << 23;
-  EXPECT_THROW(encode_glb({0, 0, 0}, mesh, targets, {1, 1, 1}, false), OutputError);
+  GlbTile tile = tile_of(mesh);
+  tile.targets = targets;
+  EXPECT_THROW(encode_glb(tile, {}), OutputError);
 }
 
 }  // namespace

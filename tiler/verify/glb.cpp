@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <meshoptimizer.h>
 
-#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -32,6 +31,21 @@ std::uint32_t word_at(const std::vector<unsigned char>& content, std::size_t off
   std::uint32_t word = 0;
   std::memcpy(&word, content.data() + offset, sizeof word);
   return word;
+}
+
+/// What KHR_draco_mesh_compression says of a primitive; null if nothing.
+const json* draco_extension(const json& primitive) {
+  const auto extensions = primitive.find("extensions");
+  if (extensions == primitive.end()) return nullptr;
+  const auto draco = extensions->find("KHR_draco_mesh_compression");
+  return draco == extensions->end() ? nullptr : &*draco;
+}
+
+template <class T>
+Glb::Vector vector_of(const unsigned char* element) {
+  std::array<T, 3> values;
+  std::memcpy(values.data(), element, sizeof values);
+  return {values[0], values[1], values[2]};
 }
 
 }  // namespace
@@ -79,9 +93,31 @@ void Glb::split_chunks() {
   if (document_.is_discarded()) fail("its JSON does not parse");
 }
 
+const json& Glb::accessor_of(const json& index) const {
+  return document_.at("accessors").at(index.get<std::size_t>());
+}
+
+std::vector<unsigned char> Glb::plain_view(const json& view, std::size_t index) const {
+  const auto offset = view.value("byteOffset", std::size_t{0});
+  const auto size = view.at("byteLength").get<std::size_t>();
+  if (view.at("buffer").get<int>() != 0 || offset > binary_size_ || size > binary_size_ - offset) {
+    fail(fmt::format("buffer view {} reaches past the end", index));
+  }
+  const auto begin = content_.begin() + static_cast<std::ptrdiff_t>(binary_begin_ + offset);
+  return {begin, begin + static_cast<std::ptrdiff_t>(size)};
+}
+
+/// \param stride  in: bytes of an element; out: from one element to the next.
 std::vector<unsigned char> Glb::decode_view(std::size_t index, std::size_t& stride) const {
-  const json& view =
-      document_.at("bufferViews").at(index).at("extensions").at("EXT_meshopt_compression");
+  const json& whole = document_.at("bufferViews").at(index);
+  const json none = json::object();
+  const json& extensions = whole.contains("extensions") ? whole.at("extensions") : none;
+  if (!extensions.contains("EXT_meshopt_compression")) {
+    stride = whole.value("byteStride", stride);
+    if (stride == 0) fail(fmt::format("buffer view {} has a stride of 0", index));
+    return plain_view(whole, index);
+  }
+  const json& view = extensions.at("EXT_meshopt_compression");
   const auto offset = view.value("byteOffset", std::size_t{0});
   const auto size = view.at("byteLength").get<std::size_t>();
   const auto count = view.at("count").get<std::size_t>();
@@ -111,7 +147,7 @@ std::vector<unsigned char> Glb::decode_view(std::size_t index, std::size_t& stri
 }
 
 Glb::View Glb::view_of(const json& accessor, std::size_t element_bytes) const {
-  View view;
+  View view{.stride = element_bytes};
   view.bytes = decode_view(accessor.at("bufferView").get<std::size_t>(), view.stride);
   const auto offset = accessor.value("byteOffset", std::size_t{0});
   const auto count = accessor.at("count").get<std::size_t>();
@@ -125,46 +161,46 @@ Glb::View Glb::view_of(const json& accessor, std::size_t element_bytes) const {
   return view;
 }
 
-std::vector<Glb::Whole> Glb::whole_vectors(const json& accessor_index) const {
-  const json& accessor = document_.at("accessors").at(accessor_index.get<std::size_t>());
+DracoPrimitive Glb::draco_of(const json& coded) const {
+  const auto index = coded.at("bufferView").get<std::size_t>();
+  const auto bytes = plain_view(document_.at("bufferViews").at(index), index);
+  auto decoded = DracoPrimitive::decode(bytes);
+  if (!decoded) fail("its Draco mesh does not decode");
+  return *std::move(decoded);
+}
+
+std::vector<Glb::Vector> Glb::vectors(const json& primitive, const char* attribute) const {
+  const json& accessor = accessor_of(primitive.at("attributes").at(attribute));
   const int type = accessor.at("componentType").get<int>();
   if ((type != kShort && type != kFloat) || accessor.at("type") != "VEC3") {
     fail("a vertex attribute is not SHORT or FLOAT VEC3");
   }
+  const auto count = accessor.at("count").get<std::size_t>();
+  if (const json* coded = draco_extension(primitive)) {
+    auto vectors = draco_of(*coded).vectors(coded->at("attributes").at(attribute));
+    if (vectors.size() != count) fail("an accessor is not as long as its Draco attribute");
+    return vectors;
+  }
   const View view = view_of(accessor, type == kShort ? 6 : 12);
-  std::vector<Whole> vectors(accessor.at("count").get<std::size_t>());
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
+  std::vector<Vector> vectors(count);
+  for (std::size_t i = 0; i < count; ++i) {
     const unsigned char* element = view.bytes.data() + i * view.stride;
-    vectors[i] = type == kShort ? whole_of_shorts(element) : whole_of_floats(element);
+    vectors[i] = type == kShort ? vector_of<std::int16_t>(element) : vector_of<float>(element);
   }
   return vectors;
 }
 
-Glb::Whole Glb::whole_of_shorts(const unsigned char* element) const {
-  std::array<std::int16_t, 3> values;
-  std::memcpy(values.data(), element, sizeof(values));
-  return {values[0], values[1], values[2]};
-}
-
-Glb::Whole Glb::whole_of_floats(const unsigned char* element) const {
-  std::array<float, 3> values;
-  std::memcpy(values.data(), element, sizeof(values));
-  Whole whole;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    constexpr float kMostWhole = 1 << 24;  // above, a float skips integers
-    if (!(std::abs(values[axis]) < kMostWhole) || std::trunc(values[axis]) != values[axis]) {
-      fail(fmt::format("a vertex attribute is {}, no whole number below 2^24", values[axis]));
-    }
-    whole[axis] = static_cast<std::int32_t>(values[axis]);
-  }
-  return whole;
-}
-
-std::vector<std::uint32_t> Glb::indices(const json& accessor_index) const {
-  const json& accessor = document_.at("accessors").at(accessor_index.get<std::size_t>());
+std::vector<std::uint32_t> Glb::indices(const json& primitive) const {
+  const json& accessor = accessor_of(primitive.at("indices"));
   const int type = accessor.at("componentType").get<int>();
   if ((type != kUnsignedShort && type != kUnsignedInt) || accessor.at("type") != "SCALAR") {
     fail("indices are not UNSIGNED SHORT or INT");
+  }
+  if (const json* coded = draco_extension(primitive)) {
+    auto indices = draco_of(*coded).indices();
+    if (accessor.at("count") != indices.size())
+      fail("an accessor is not as long as its Draco mesh");
+    return indices;
   }
   const std::size_t element_bytes = type == kUnsignedShort ? 2 : 4;
   const View view = view_of(accessor, element_bytes);

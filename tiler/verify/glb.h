@@ -6,15 +6,18 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "tiler/verify/draco_primitive.h"
+
 namespace terrane::verify {
 
-/// A binary glTF file whose buffer views are compressed with EXT_meshopt_compression.
+/// A binary glTF file whose primitives are compressed with EXT_meshopt_compression, with
+/// KHR_draco_mesh_compression, or not at all.
 ///
 /// Every accessor is checked against the file's length before it is read; whatever is wrong is an
 /// InputError that names the file.
 class Glb {
  public:
-  using Whole = std::array<std::int32_t, 3>;
+  using Vector = std::array<double, 3>;
 
   /// \throws InputError if the file is missing, cut off or no binary glTF.
   static Glb read(const std::filesystem::path& file);
@@ -22,11 +25,11 @@ class Glb {
   const nlohmann::json& document() const { return document_; }
   std::int64_t bytes() const { return static_cast<std::int64_t>(content_.size()); }
 
-  /// Elements of a VEC3 accessor of whole numbers, stored as SHORT or as FLOAT.
-  std::vector<Whole> whole_vectors(const nlohmann::json& accessor_index) const;
+  /// An attribute of a primitive of SHORT or FLOAT VEC3; exact.
+  std::vector<Vector> vectors(const nlohmann::json& primitive, const char* attribute) const;
 
-  /// Elements of an UNSIGNED SHORT or UNSIGNED INT scalar accessor.
-  std::vector<std::uint32_t> indices(const nlohmann::json& accessor_index) const;
+  /// The corners of a primitive, UNSIGNED SHORT or UNSIGNED INT.
+  std::vector<std::uint32_t> indices(const nlohmann::json& primitive) const;
 
   /// An error about this file.
   [[noreturn]] void fail(const std::string& what) const;
@@ -37,10 +40,11 @@ class Glb {
     std::size_t stride = 0;
   };
 
-  Whole whole_of_shorts(const unsigned char* element) const;
-  Whole whole_of_floats(const unsigned char* element) const;
+  const nlohmann::json& accessor_of(const nlohmann::json& index) const;
   std::vector<unsigned char> decode_view(std::size_t index, std::size_t& stride) const;
+  std::vector<unsigned char> plain_view(const nlohmann::json& view, std::size_t index) const;
   View view_of(const nlohmann::json& accessor, std::size_t element_bytes) const;
+  DracoPrimitive draco_of(const nlohmann::json& coded) const;
   void split_chunks();
 
   std::filesystem::path file_;

@@ -28,6 +28,7 @@ class ListingCheck {
       ++level(key.level).facts_misstated;
       problems_.push_back(fmt::format("{}: listed twice in tileset.json", to_string(key)));
     }
+    for (const auto& [key, what] : output_.contradictions) misstated(key, what);
     check_root();
     find_stray_files();
     return std::move(problems_);
@@ -131,26 +132,29 @@ class ListingCheck {
   }
 
   void find_stray_files() {
-    const auto folder = output_.folder / "tiles";
-    if (!std::filesystem::is_directory(folder)) return;  // reading the first tile will say so
-    std::set<std::filesystem::path> listed;
+    std::set<std::filesystem::path> listed(output_.tilesets.begin(), output_.tilesets.end());
     for (const auto& [key, entry] : output_.tiles) listed.insert(output_.file_of(key));
     std::set<std::filesystem::path> strays;
-    for (const auto& file : std::filesystem::recursive_directory_iterator(folder)) {
-      if (!file.is_directory() && !listed.contains(file.path())) strays.insert(file.path());
+    for (const char* name : {"tiles", "tilesets", "content", "subtrees"}) {
+      const auto folder = output_.folder / name;
+      if (!std::filesystem::is_directory(folder)) continue;  // reading the first tile will say so
+      for (const auto& file : std::filesystem::recursive_directory_iterator(folder)) {
+        if (!file.is_directory() && !listed.contains(file.path())) strays.insert(file.path());
+      }
     }
     for (const auto& stray : strays) {
-      const std::string name = stray.lexically_relative(output_.folder).generic_string();
-      ++level(level_of(stray.lexically_relative(folder))).tiles_unexpected;
-      problems_.push_back(fmt::format("{}: not in tileset.json", name));
+      const auto name = stray.lexically_relative(output_.folder);
+      ++level(level_of(name)).tiles_unexpected;
+      problems_.push_back(fmt::format("{}: not in tileset.json", name.generic_string()));
     }
   }
 
-  static int level_of(const std::filesystem::path& below_tiles) {
-    const std::string name = below_tiles.begin()->string();
+  /// \param name  like "tiles/3/...", or "content/3/..." counted from the root.
+  int level_of(const std::filesystem::path& name) const {
+    const std::string digits = std::next(name.begin())->string();
     int number = 0;
-    std::from_chars(name.data(), name.data() + name.size(), number);
-    return number;
+    std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    return output_.is_implicit ? output_.tiling.level_count() - 1 - number : number;
   }
 
   const Output& output_;

@@ -4,11 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <fstream>
-#include <functional>
-#include <nlohmann/json.hpp>
 
-#include "core/errors.h"
+#include "tiler/verify/json_file.h"
+#include "tiler/verify/tileset.h"
 
 namespace terrane::verify {
 namespace {
@@ -21,25 +19,6 @@ constexpr double kBoxSlack = 1e-6;  // of the box's size
 constexpr std::int64_t kMostSamples = std::int64_t{1} << 40;
 constexpr std::int64_t kMostTileCells = std::int64_t{1} << 20;
 constexpr int kMostLevelsPerOctave = 16;
-
-InputError damaged(const std::filesystem::path& file, const std::string& what) {
-  return InputError(
-      fmt::format("{}: damaged ({}). Run 'terrane build' again with --force", file.string(), what));
-}
-
-/// Parses a file and hands it to a reader; whatever is wrong in it becomes an InputError.
-void read_json(const std::filesystem::path& file, const std::function<void(const json&)>& reader) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) {
-    throw InputError(fmt::format(
-        "{}: missing or unreadable. Run 'terrane build' again with --force", file.string()));
-  }
-  try {
-    reader(json::parse(stream));
-  } catch (const json::exception& error) {
-    throw damaged(file, error.what());
-  }
-}
 
 Frame read_frame(const json& frame, const std::filesystem::path& file) {
   const auto kind = frame.at("kind").get<std::string>();
@@ -119,40 +98,6 @@ void read_terrane_json(const json& document, const std::filesystem::path& file, 
   check_steps(output.levels, file);
 }
 
-Box read_box(const json& numbers) {
-  const auto values = numbers.get<std::array<double, 12>>();
-  Box box;
-  box.centre = Eigen::Map<const Eigen::Vector3d>(values.data());
-  box.half_axes = Eigen::Map<const Eigen::Matrix3d>(values.data() + 3);
-  return box;
-}
-
-void read_tile(const json& tile, const std::optional<TileKey>& parent, Output& output) {
-  const json& extras = tile.at("extras").at("terrane");
-  TileEntry entry{.key = {extras.at("level"), extras.at("x"), extras.at("y")},
-                  .parent = parent,
-                  .uri = tile.at("content").at("uri"),
-                  .geometric_error_m = tile.at("geometricError"),
-                  .max_error_m = extras.at("max_error_m"),
-                  .triangles = extras.at("triangles"),
-                  .bytes = extras.at("bytes"),
-                  .box = read_box(tile.at("boundingVolume").at("box"))};
-  const TileKey key = entry.key;
-  if (!output.tiles.emplace(key, std::move(entry)).second) output.listed_twice.push_back(key);
-  if (!tile.contains("children")) return;
-  for (const json& child : tile.at("children")) read_tile(child, key, output);
-}
-
-void read_tileset_json(const json& document, Output& output) {
-  const json& root = document.at("root");
-  output.refine = root.value("refine", "");
-  if (root.contains("transform")) {
-    const auto values = root.at("transform").get<std::array<double, 16>>();
-    output.root_transform = Eigen::Map<const Eigen::Matrix4d>(values.data());
-  }
-  read_tile(root, std::nullopt, output);
-}
-
 /// Half axes as unit vectors; a flat box takes the missing one from the others.
 Eigen::Matrix3d unit_axes(const Eigen::Matrix3d& half_axes) {
   Eigen::Matrix3d axes = half_axes;
@@ -195,7 +140,9 @@ const TileEntry* Output::find(const TileKey& key) const {
 }
 
 std::filesystem::path Output::file_of(const TileKey& key) const {
-  return folder / fmt::format("tiles/{}/{}/{}.glb", key.level, key.x, key.y);
+  if (!is_implicit) return folder / fmt::format("tiles/{}/{}/{}.glb", key.level, key.x, key.y);
+  const int depth = tiling.level_count() - 1 - key.level;
+  return folder / fmt::format("content/{}/{}/{}.glb", depth, key.x, key.y);
 }
 
 Output read_output(const std::filesystem::path& folder) {
@@ -210,8 +157,7 @@ Output read_output(const std::filesystem::path& folder) {
   }
   read_json(terrane_json,
             [&](const json& document) { read_terrane_json(document, terrane_json, output); });
-  read_json(folder / "tileset.json",
-            [&](const json& document) { read_tileset_json(document, output); });
+  read_tileset(output);
   return output;
 }
 

@@ -69,6 +69,10 @@ struct Output {
   std::vector<TileKey> listed_twice;
   std::string refine;
   std::optional<Eigen::Matrix4d> root_transform;
+  bool is_implicit = false;
+  std::vector<std::filesystem::path> tilesets;  ///< external tilesets or subtrees
+  /// Tiles of which the files say two things, and what.
+  std::vector<std::pair<TileKey, std::string>> contradictions;
 
   /// Step in plan of the next level: a morphing vertex is rounded to either lattice.
   double reach_m(int level) const;
@@ -76,7 +80,7 @@ struct Output {
   std::filesystem::path file_of(const TileKey& key) const;
 };
 
-/// Reads terrane.json and tileset.json.
+/// Reads terrane.json, tileset.json and what that refers to.
 ///
 /// \throws InputError if one is missing, cut off, of another format, or states what cannot be
 ///         (steps that are no multiples of each other, too few levels).

@@ -52,12 +52,19 @@ void count_folds(TileFindings& findings, bool is_root) {
   }
 }
 
-void check_box(TileFindings& findings, const Box& box) {
+/// \param step_m  of the tile's level.
+void check_box(TileFindings& findings, const Box& box, const Eigen::Vector3d& step_m) {
   const PlacedMesh& placed = *findings.placed;
   for (std::uint32_t vertex = 0; vertex < placed.mesh().position.size(); ++vertex) {
     const bool is_inside =
         box.contains(placed.corner(vertex, 0)) && box.contains(placed.corner(vertex, 1));
     findings.vertices_outside_box += !is_inside;
+  }
+  for (const Lattice& point : placed.mesh().hem) {
+    const Eigen::Vector3d at = Eigen::Map<const Eigen::Matrix<std::int64_t, 3, 1>>(point.data())
+                                   .cast<double>()
+                                   .cwiseProduct(step_m);
+    findings.vertices_outside_box += !box.contains(at);
   }
   if (findings.vertices_outside_box > 0) {
     findings.problems.push_back(fmt::format("{}: its box lacks {} of its vertices",
@@ -102,7 +109,7 @@ TileFindings examine_tile(const Output& output, const World& world, const ValidD
   findings.at_rest = triangles_at_rest(mesh);
   if (!is_root) findings.at_next_level = triangles_at_next_level(mesh);
   count_folds(findings, is_root);
-  check_box(findings, entry->box);
+  check_box(findings, entry->box, output.levels[static_cast<std::size_t>(key.level)].step_m);
   check_facts(findings, *entry);
   return findings;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "tiler/verify/glb.h"
 
@@ -12,8 +13,28 @@ namespace {
 
 using nlohmann::json;
 
+/// What one unit of a stored position is in lattice steps, in glTF's axes.
+using Units = std::array<double, 3>;
+
+/// A node that scales has positions in steps, one that does not has them in metres.
+Units units_of(const json& document, const Eigen::Vector3d& step) {
+  if (document.at("nodes").at(0).contains("scale")) return {1, 1, 1};
+  return {1 / step[0], 1 / step[2], 1 / step[1]};
+}
+
 /// glTF is y up: (i, k, -j) back to (i, j, k).
-Lattice from_y_up(const Glb::Whole& stored) { return {stored[0], -stored[2], stored[1]}; }
+Lattice from_y_up(const Glb& glb, const Glb::Vector& stored, const Units& units) {
+  Lattice whole;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    constexpr double kMostWhole = 1 << 24;  // above, a float skips integers
+    const double steps = stored[axis] * units[axis];
+    if (!(std::abs(steps) < kMostWhole) || std::trunc(steps) != steps) {
+      glb.fail(fmt::format("a vertex attribute is {} steps, no whole number below 2^24", steps));
+    }
+    whole[axis] = static_cast<std::int64_t>(steps);
+  }
+  return {whole[0], -whole[2], whole[1]};
+}
 
 bool agree(const json& numbers, const std::array<double, 3>& expected) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -26,13 +47,12 @@ bool agree(const json& numbers, const std::array<double, 3>& expected) {
 void check_node(const json& document, const Eigen::Vector3d& step, const Lattice& origin,
                 TileMesh& mesh) {
   const json& nodes = document.at("nodes");
-  if (nodes.size() != 1 || document.at("meshes").size() != 1 ||
-      document["meshes"][0].at("primitives").size() != 1) {
-    mesh.misstated.push_back("has not one node, one mesh, one primitive");
+  if (nodes.size() != 1 || document.at("meshes").size() != 1) {
+    mesh.misstated.push_back("has not one node and one mesh");
   }
   const json& node = nodes.at(0);
   if (node.contains("matrix") || node.contains("rotation") ||
-      !agree(node.at("scale"), {step[0], step[2], step[1]})) {
+      (node.contains("scale") && !agree(node.at("scale"), {step[0], step[2], step[1]}))) {
     mesh.misstated.push_back("the node's scale is not the step of terrane.json");
   }
   const auto i = static_cast<double>(origin[0]);
@@ -52,17 +72,17 @@ void check_extras(const json& extras, TileMesh& mesh) {
 }
 
 /// Clients cull by min and max; a wrong one makes a tile vanish.
-void check_bounds(const json& accessor, const std::vector<Glb::Whole>& values, TileMesh& mesh) {
-  Glb::Whole least = values.front();
-  Glb::Whole most = values.front();
+void check_bounds(const json& accessor, const std::vector<Glb::Vector>& values, TileMesh& mesh) {
+  Glb::Vector least = values.front();
+  Glb::Vector most = values.front();
   for (const auto& value : values) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       least[axis] = std::min(least[axis], value[axis]);
       most[axis] = std::max(most[axis], value[axis]);
     }
   }
-  if (accessor.at("min").get<Glb::Whole>() != least ||
-      accessor.at("max").get<Glb::Whole>() != most) {
+  if (accessor.at("min").get<Glb::Vector>() != least ||
+      accessor.at("max").get<Glb::Vector>() != most) {
     mesh.misstated.push_back("min and max of POSITION are not those of its vertices");
   }
 }
@@ -70,8 +90,12 @@ void check_bounds(const json& accessor, const std::vector<Glb::Whole>& values, T
 void check_primitive(const json& document, const json& primitive, TileMesh& mesh) {
   const json& attributes = primitive.at("attributes");
   if (primitive.value("mode", 4) != 4) mesh.misstated.push_back("its primitive is no triangles");
-  if (!primitive.contains("targets") ||
-      primitive.at("targets").at(0).at("POSITION") != attributes.at("_MORPH")) {
+  // where Draco orders the vertices anew, a target beside it would not fit
+  const bool is_draco =
+      primitive.value("extensions", json::object()).contains("KHR_draco_mesh_compression");
+  if (is_draco ? primitive.contains("targets")
+               : !primitive.contains("targets") ||
+                     primitive.at("targets").at(0).at("POSITION") != attributes.at("_MORPH")) {
     mesh.misstated.push_back("its morph target is not the accessor of _MORPH");
   }
   const json& normals = document.at("accessors").at(attributes.at("NORMAL").get<std::size_t>());
@@ -89,18 +113,62 @@ void take_triangles(const Glb& glb, const std::vector<std::uint32_t>& indices, T
   }
 }
 
-void take_vertices(const Glb& glb, const json& primitive, const Lattice& origin, TileMesh& mesh) {
-  const json& attributes = primitive.at("attributes");
-  const auto positions = glb.whole_vectors(attributes.at("POSITION"));
-  const auto morphs = glb.whole_vectors(attributes.at("_MORPH"));
+struct Vertices {
+  std::vector<Lattice> position;
+  std::vector<Lattice> morph;
+};
+
+Vertices read_vertices(const Glb& glb, const json& primitive, const Units& units,
+                       const Lattice& origin, TileMesh& mesh) {
+  const auto positions = glb.vectors(primitive, "POSITION");
+  const auto morphs = glb.vectors(primitive, "_MORPH");
   if (positions.empty()) glb.fail("no vertices");
   if (positions.size() != morphs.size()) glb.fail("POSITION and _MORPH differ in length");
+  Vertices vertices;
   for (std::size_t v = 0; v < positions.size(); ++v) {
-    mesh.position.push_back(origin + from_y_up(positions[v]));
-    mesh.morph.push_back(from_y_up(morphs[v]));
+    vertices.position.push_back(origin + from_y_up(glb, positions[v], units));
+    vertices.morph.push_back(from_y_up(glb, morphs[v], units));
   }
-  const auto accessor = attributes.at("POSITION").get<std::size_t>();
+  const auto accessor = primitive.at("attributes").at("POSITION").get<std::size_t>();
   check_bounds(glb.document().at("accessors").at(accessor), positions, mesh);
+  return vertices;
+}
+
+/// Place and displacement, to be sorted by.
+using Standing = std::pair<Lattice, Lattice>;
+
+/// A skirt hangs from vertices of the tile straight down, all of it equally far.
+void take_skirt(const Glb& glb, const json& primitive, const Units& units, const Lattice& origin,
+                TileMesh& mesh) {
+  if (!primitive.at("extras").at("terrane").at("skirt").get<bool>()) {
+    mesh.misstated.push_back("its second primitive is no skirt");
+  }
+  const Vertices vertices = read_vertices(glb, primitive, units, origin, mesh);
+  std::set<Standing> surface;
+  for (std::size_t v = 0; v < mesh.position.size(); ++v) {
+    surface.emplace(mesh.position[v], mesh.morph[v]);
+  }
+  std::set<Standing> upper, lower;
+  for (std::size_t v = 0; v < vertices.position.size(); ++v) {
+    const Standing vertex{vertices.position[v], vertices.morph[v]};
+    (surface.contains(vertex) ? upper : lower).insert(vertex);
+    if (surface.contains(vertex)) continue;
+    mesh.hem.push_back(vertex.first);
+    mesh.hem.push_back(vertex.first + vertex.second);
+  }
+  const auto falls = [&](const Standing& high, const Standing& low) {
+    const auto& first_high = upper.begin()->first;
+    const auto& first_low = lower.begin()->first;
+    return high.second == low.second && low.first[2] < high.first[2] &&
+           low.first - high.first == first_low - first_high;
+  };
+  // moving all alike keeps their order
+  if (upper.empty() || !std::equal(upper.begin(), upper.end(), lower.begin(), lower.end(), falls)) {
+    mesh.misstated.push_back("its skirt does not hang straight from its vertices");
+  }
+  for (const std::uint32_t index : glb.indices(primitive)) {
+    if (index >= vertices.position.size()) glb.fail("an index points past the vertices");
+  }
 }
 
 }  // namespace
@@ -109,20 +177,31 @@ Lattice operator+(const Lattice& a, const Lattice& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
 
+Lattice operator-(const Lattice& a, const Lattice& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
 TileMesh read_tile_mesh(const Output& output, const TileKey& key) {
   const Glb glb = Glb::read(output.file_of(key));
   TileMesh mesh{.key = key, .bytes = glb.bytes()};
   try {
     const json& document = glb.document();
     const json& content = document.at("meshes").at(0);
-    const json& primitive = content.at("primitives").at(0);
+    const json& primitives = content.at("primitives");
+    const json& primitive = primitives.at(0);
     const json& extras = content.at("extras").at("terrane");
     const auto origin = extras.at("origin").get<Lattice>();
-    take_vertices(glb, primitive, origin, mesh);
-    take_triangles(glb, glb.indices(primitive.at("indices")), mesh);
+    const Eigen::Vector3d& step = output.levels[static_cast<std::size_t>(key.level)].step_m;
+    const Units units = units_of(document, step);
+    Vertices vertices = read_vertices(glb, primitive, units, origin, mesh);
+    mesh.position = std::move(vertices.position);
+    mesh.morph = std::move(vertices.morph);
+    take_triangles(glb, glb.indices(primitive), mesh);
     check_extras(extras, mesh);
-    check_node(document, output.levels[static_cast<std::size_t>(key.level)].step_m, origin, mesh);
+    check_node(document, step, origin, mesh);
     check_primitive(document, primitive, mesh);
+    if (primitives.size() > 1) take_skirt(glb, primitives.at(1), units, origin, mesh);
+    if (primitives.size() > 2) mesh.misstated.push_back("has more primitives than two");
   } catch (const json::exception& error) {
     glb.fail(error.what());
   }

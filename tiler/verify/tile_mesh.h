@@ -14,6 +14,7 @@ namespace terrane::verify {
 using Lattice = std::array<std::int64_t, 3>;
 
 Lattice operator+(const Lattice& a, const Lattice& b);
+Lattice operator-(const Lattice& a, const Lattice& b);
 
 /// A tile as its glb holds it, back on the lattice of its level.
 struct TileMesh {
@@ -22,6 +23,7 @@ struct TileMesh {
   std::vector<Lattice> position;  ///< at t = 0
   std::vector<Lattice> morph;     ///< displacement to t = 1
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Lattice> hem;  ///< lower ends of its skirts at t = 0 and at t = 1, if it has any
   std::vector<std::string> misstated;  ///< what the glb says of itself and is not so
 
   Lattice target(std::size_t vertex) const { return position[vertex] + morph[vertex]; }
