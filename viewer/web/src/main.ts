@@ -6,6 +6,7 @@ import type {Pose} from './core/pose';
 import type {SeamReport} from './core/seams';
 import {kDefaults, type Settings} from './core/settings';
 import {readJson, type Source} from './core/source';
+import {readBelow} from './core/subtree';
 import {parseTileset, type Tileset} from './core/tileset';
 import {showError} from './view/page';
 import {Session} from './view/session';
@@ -46,7 +47,10 @@ async function readTileset(source: Source): Promise<Tileset> {
     readJson(source, source.url),
     readJson(source, beside),
   ]);
-  return parseTileset(tileset, terrane, source.url);
+  const parsed = parseTileset(tileset, terrane, source.url);
+  // the first view needs the root's own box
+  await readBelow(parsed.root, (url) => source.read(url));
+  return parsed;
 }
 
 function bounds({root}: Tileset) {

@@ -2,7 +2,7 @@
 import type {Theme} from '../core/daylight';
 import {poseAt, type Waypoint} from '../core/camera_path';
 import {lengthText} from '../core/round_numbers';
-import {readPermalink, writePermalink, type Settings} from '../core/settings';
+import {kDefaults, readPermalink, writePermalink, type Settings} from '../core/settings';
 import type {Source} from '../core/source';
 import type {Tileset} from '../core/tileset';
 import {showLegend} from './legend';
@@ -24,6 +24,9 @@ export class Session {
   private readonly prefersDark = matchMedia('(prefers-color-scheme: dark)');
   private cursor: {right: number; up: number} | undefined;
   private linkTimer = 0;
+  private offersImagery: boolean | undefined;
+  /** Whether the look is the user's, or that of a permalink. */
+  private hasChosen = location.hash.includes('look=');
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -39,7 +42,10 @@ export class Session {
     });
     if (pose) this.viewer.setPose(pose);
     this.panel = new Panel(settings, {
-      onChange: (change) => this.set({...this.settings, ...change}),
+      onChange: (change) => {
+        this.hasChosen ||= 'look' in change;
+        this.set({...this.settings, ...change});
+      },
       onFreeze: (on) => this.viewer.setFrozen(on),
     });
     this.measure = new Measure(canvas, {
@@ -86,7 +92,7 @@ export class Session {
   private onFrame(): void {
     const stats = this.viewer.stats();
     this.panel.showFigures(stats);
-    this.panel.offerImagery(this.viewer.hasImagery);
+    if (this.viewer.hasImagery !== this.offersImagery) this.offerImagery();
     const {contours} = this.settings;
     this.panel.showContourInterval(contours ? lengthText(this.viewer.contourM) : '');
     showError(this.viewer.failureText());
@@ -96,6 +102,15 @@ export class Session {
     this.showCursor();
     this.measure.follow();
     this.linkSoon();
+  }
+
+  /** The first tile with an image or colours has come: that is what people want to see. */
+  private offerImagery(): void {
+    this.offersImagery = this.viewer.hasImagery;
+    this.panel.offerImagery(this.offersImagery);
+    const {look} = this.settings;
+    if (!this.offersImagery || this.hasChosen || look !== kDefaults.look) return;
+    this.set({...this.settings, look: 'imagery'});
   }
 
   private showCursor(): void {

@@ -184,8 +184,8 @@ export const kFragmentShader = /* glsl */ `
     n = normalize(vec3(n.xy, n.z / exaggeration));
     float sky = 0.5 + 0.5 * n.z;
     vec3 light = skylight * (0.25 + 0.75 * sky) + sunlight * max(dot(n, sun), 0.0);
-    // where colours are to be read, shading only hints at the shape
-    bool isReading = look == 2 || look >= 4;
+    // where colours are to be read, or have shadows of their own, shading only hints at the shape
+    bool isReading = look >= 2;
     color *= isReading ? mix(vec3(1.0), light, 0.5) : light;
     if (contourStrength > 0.0) {
       float line = mix(contour(contours.x), contour(contours.y), contours.z);

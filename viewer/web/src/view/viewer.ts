@@ -30,7 +30,7 @@ export interface ViewerStats extends Drawn {
   readonly loadedShare: number;
   /** Places where detail is held back. */
   readonly holdbacks: number;
-  /** Longest that the page's own thread worked on one tile that came in, in milliseconds. */
+  /** What the page's own thread worked on a tile that came in: milliseconds, the mean. */
   readonly tileMs: number;
   /** Milliseconds between the last pictures; undefined while nothing moves. */
   readonly frameMs: number | undefined;
@@ -68,7 +68,8 @@ export class Viewer {
   private isMoving = true;
   private lastMs = 0;
   private frameMs: number | undefined;
-  private tileMs = 0;
+  private tilesMs = 0;
+  private tilesMade = 0;
   private waiting: (() => void)[] = [];
 
   constructor(
@@ -154,7 +155,7 @@ export class Viewer {
       shownTolerancePx: this.shownTolerancePx(),
       loadedShare: frame ? frame.loaded / frame.wanted : 0,
       holdbacks: frame?.holdbacks.length ?? 0,
-      tileMs: this.tileMs,
+      tileMs: this.tilesMs / Math.max(1, this.tilesMade),
       frameMs: this.isMoving ? this.frameMs : undefined,
     };
   }
@@ -238,7 +239,8 @@ export class Viewer {
       this.hasImagery ||= content.hasDrape;
       const parent = tile.parent && this.streamer.content(tile.parent);
       if (parent || !tile.parent) completeNormals(content, parent ?? undefined);
-      this.tileMs = Math.max(this.tileMs, performance.now() - beginMs);
+      this.tilesMs += performance.now() - beginMs;
+      ++this.tilesMade;
       return content;
     } catch (error) {
       throw new Error(`${tile.url}: ${error instanceof Error ? error.message : String(error)}`);

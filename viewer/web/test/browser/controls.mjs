@@ -2,7 +2,7 @@
 // reached and read without a mouse.
 //
 //     node controls.mjs [--chromium /usr/bin/chromium]
-import {mkdtemp, rm} from 'node:fs/promises';
+import {mkdtemp, rm, writeFile} from 'node:fs/promises';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {fileURLToPath} from 'node:url';
@@ -214,8 +214,23 @@ function lowestContrast() {
   return Math.min(...ratios);
 }
 
+/** The page flies along a path that a file gives. */
+async function playPath(context, url) {
+  const {page} = await open(context, `${url}?path=path.json`, 8);
+  await page.waitForTimeout(900);
+  await ready(page);
+  const {eye, headingDeg} = await poseOf(page);
+  check(Math.abs(eye[0] - 100) < 1e-6 && headingDeg === 30, 'a path is flown to its end');
+  await page.close();
+}
+
 async function run(folder) {
   await writeTileset(folder);
+  const path = [
+    {s: 0, eye: [-2000, -3000, 2500], heading_deg: 0, pitch_deg: -40},
+    {s: 0.5, eye: [100, -3000, 2500], heading_deg: 30, pitch_deg: -40},
+  ];
+  await writeFile(join(folder, 'path.json'), JSON.stringify(path));
   const server = await serveFolders([folder, kDist]);
   await withBrowser(options.chromium, async (context) => {
     const {page, problems} = await open(context, server.url, 8);
@@ -225,6 +240,7 @@ async function run(folder) {
     await useTouch(page);
     await useTools(page);
     await readWithoutMouse(page);
+    await playPath(context, server.url);
     check(problems.console.length === 0, `console errors: ${problems.console.join('; ') || 'none'}`);
   });
   server.close();

@@ -71,6 +71,8 @@ async function run(folder) {
     await page.evaluate((pose) => window.terrane.setPose(pose), kPose);
     await watchLoading(page);
     await finalPicture(page);
+    const {tileMs} = await page.evaluate(() => window.terrane.stats());
+    check(tileMs < 4, `${tileMs.toFixed(2)} ms of the page's own time for a tile, decoding left out`);
     await page.evaluate((pixels) => (window.kept.expected = Uint8Array.from(pixels)), expected);
     const {largest} = await differenceOf(page, 'final', 'expected');
     check(largest === 0, `the final picture differs by ${largest} from that without delays`);

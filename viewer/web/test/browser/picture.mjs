@@ -3,7 +3,8 @@ const kMagenta = 0xff00ff;
 
 /**
  * Share of the canvas that terrain covers, its different colours, and the pixels of backdrop that
- * terrain surrounds: those of a crack, or of a hole in the data.
+ * terrain surrounds: `enclosed`, all of them, those of holes in the data too; `cracks`, those of
+ * patches that are nowhere three pixels wide and high.
  */
 export function readPicture(page) {
   return page.evaluate((magenta) => {
@@ -23,26 +24,41 @@ export function readPicture(page) {
       else colors.add(pixels[i]);
     }
 
-    // all backdrop that can be walked to from the border of the picture
+    // walks through connected backdrop; gives its pixels
     const reached = new Uint8Array(pixels.length);
-    const open = [];
-    const visit = (i) => {
-      if (reached[i] || !isBackdrop(i)) return;
-      reached[i] = 1;
-      open.push(i);
+    const walk = (starts) => {
+      const open = [];
+      const visit = (i) => {
+        if (reached[i] || !isBackdrop(i)) return;
+        reached[i] = 1;
+        open.push(i);
+      };
+      starts.forEach(visit);
+      for (let next = 0; next < open.length; ++next) {
+        const [i, x] = [open[next], open[next] % width];
+        if (x > 0) visit(i - 1);
+        if (x < width - 1) visit(i + 1);
+        if (i >= width) visit(i - width);
+        if (i < pixels.length - width) visit(i + width);
+      }
+      return open;
     };
-    for (let x = 0; x < width; ++x) [x, (height - 1) * width + x].forEach(visit);
-    for (let y = 0; y < height; ++y) [y * width, y * width + width - 1].forEach(visit);
-    let outside = 0;
-    for (let i = open.pop(); i !== undefined; i = open.pop()) {
-      ++outside;
-      const x = i % width;
-      if (x > 0) visit(i - 1);
-      if (x < width - 1) visit(i + 1);
-      if (i >= width) visit(i - width);
-      if (i < pixels.length - width) visit(i + width);
+    const rim = [];
+    for (let x = 0; x < width; ++x) rim.push(x, (height - 1) * width + x);
+    for (let y = 0; y < height; ++y) rim.push(y * width, y * width + width - 1);
+    walk(rim);
+
+    // what is left is inside: no such pixel lies on the rim of the picture
+    const isWide = (i) =>
+      [-1, 0, 1].every((dy) => [-1, 0, 1].every((dx) => isBackdrop(i + dy * width + dx)));
+    let [enclosed, cracks] = [0, 0];
+    for (let i = 0; i < pixels.length; ++i) {
+      if (reached[i] || !isBackdrop(i)) continue;
+      const patch = walk([i]);
+      enclosed += patch.length;
+      if (!patch.some(isWide)) cracks += patch.length;
     }
-    return {drawn: 1 - backdrop / pixels.length, colors: colors.size, enclosed: backdrop - outside};
+    return {drawn: 1 - backdrop / pixels.length, colors: colors.size, enclosed, cracks};
   }, kMagenta);
 }
 
