@@ -1,9 +1,11 @@
 // Flies over a served tileset and looks for cracks and pops.
 //
-//     node flight.mjs --url http://127.0.0.1:8080/ [--cameras 12] [--steps 24] [--tolerance 2]
+//     node flight.mjs --url http://127.0.0.1:8080/ [--cameras 12] [--flight 24] [--steps 24]
+//         [--tolerance 2]
 //
-// Cameras: random ones over the terrain, the same for the same seed. Steps: along a flight from
-// afar down to the ground; what is shown is compared with a mesh that does not change on the way.
+// Cameras: random ones over the terrain, the same for the same seed, for which all is loaded.
+// Flight: from afar down to the ground without waiting for tiles. Steps: a part of it with all tiles
+// at hand; what is shown is compared with a mesh that does not change on the way.
 import {parseArgs} from 'node:util';
 import {check, failures, open, ready, withBrowser} from './browser.mjs';
 import {differenceOf, keepPicture, readPicture} from './picture.mjs';
@@ -12,6 +14,7 @@ const {values: options} = parseArgs({
   options: {
     url: {type: 'string'},
     cameras: {type: 'string', default: '12'},
+    flight: {type: 'string', default: '24'},
     steps: {type: 'string', default: '24'},
     tolerance: {type: 'string', default: '2'},
     chromium: {type: 'string', default: '/usr/bin/chromium'},
@@ -65,6 +68,20 @@ function flightPose({min, max}, t) {
   const size = Math.hypot(max[0] - min[0], max[1] - min[1]);
   const eye = [at(0, 0.3 + 0.3 * t), at(1, 0.1 + 0.4 * t), max[2] + size * (0.02 + 0.3 * (1 - t) ** 2)];
   return {eye, headingDeg: 20 * t, pitchDeg: -40 + 15 * t};
+}
+
+async function flyWithoutWaiting(page) {
+  const bounds = await page.evaluate(() => window.terrane.bounds());
+  const count = Number(options.flight);
+  let [vertices, mismatches, held] = [0, 0, 0];
+  for (let i = 0; i <= count; ++i) {
+    await page.evaluate((pose) => window.terrane.setPose(pose), flightPose(bounds, i / count));
+    const seams = await page.evaluate(() => window.terrane.checkSeams());
+    vertices += seams.vertices;
+    mismatches += seams.mismatches;
+    held += (await page.evaluate(() => window.terrane.stats())).holdbacks;
+  }
+  check(vertices > 0 && mismatches === 0, `${count} steps of a flight: ${vertices} vertices of seams, ${mismatches} apart; ${held} times held back`);
 }
 
 const kPlaces = 48;
@@ -146,6 +163,7 @@ async function run(context) {
   const {page, problems} = await open(context, options.url, options.tolerance);
   await ready(page);
   await lookForCracks(page);
+  await flyWithoutWaiting(page);
   await lookForPops(page);
   await comparePictures(page);
   check(problems.console.length === 0, `console errors: ${problems.console.join('; ') || 'none'}`);

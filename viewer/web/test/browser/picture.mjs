@@ -35,11 +35,14 @@ export function readPicture(page) {
       };
       starts.forEach(visit);
       for (let next = 0; next < open.length; ++next) {
-        const [i, x] = [open[next], open[next] % width];
-        if (x > 0) visit(i - 1);
-        if (x < width - 1) visit(i + 1);
-        if (i >= width) visit(i - width);
-        if (i < pixels.length - width) visit(i + width);
+        const [x, y] = [open[next] % width, Math.floor(open[next] / width)];
+        // diagonals too: the sky between two jags of a far ridge is sky
+        for (const dy of [-1, 0, 1]) {
+          for (const dx of [-1, 0, 1]) {
+            const isOutside = x + dx < 0 || x + dx >= width || y + dy < 0 || y + dy >= height;
+            if (!isOutside) visit((y + dy) * width + x + dx);
+          }
+        }
       }
       return open;
     };
