@@ -33,6 +33,7 @@ struct ArchiveFacts {
   std::uint64_t files = 0;       ///< names
   std::uint64_t contents = 0;    ///< different contents that are stored
   std::uint64_t tile_bytes = 0;  ///< of the tiles, as stored
+  std::string tiles;  ///< of a PMTiles: "65 of tiles/{l}/{x}/{y}.glb, zooms 0 to 3, clustered"
 };
 
 /// Files by name, as they lay in the folder that was packed: "tiles/0/3/4.glb".

@@ -65,12 +65,19 @@ class Pmtiles final : public Archive {
     return {.format = "PMTiles 3",
             .files = texts_.size() + stored_.size() + addressed_,
             .contents = texts_.size() + stored_.size() + offsets.size(),
-            .tile_bytes = bytes};
+            .tile_bytes = bytes,
+            .tiles = describe_tiles()};
   }
 
   const ArchiveFile& file() const override { return *file_; }
 
  private:
+  std::string describe_tiles() const {
+    return fmt::format("{} of {}, zooms {} to {}, {}", addressed_,
+                       path_ ? path_->pattern() : "none", header_.min_zoom, header_.max_zoom,
+                       header_.is_clustered ? "clustered" : "not clustered");
+  }
+
   std::string unpacked(const std::string& bytes, std::uint64_t most_bytes) const {
     if (header_.internal_compression == PmtilesHeader::kNone) return bytes;
     auto plain = gunzip(bytes, most_bytes);

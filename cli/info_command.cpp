@@ -100,6 +100,7 @@ void describe_archive(const std::filesystem::path& file) {
   print_row("size", fmt::format("{:.2f} MB, {} files, {} different contents",
                                 static_cast<double>(archive->file().bytes()) / 1e6, facts.files,
                                 facts.contents));
+  if (!facts.tiles.empty()) print_row("tiles", facts.tiles);
   if (const auto summary = archive->read("terrane.json")) describe_summary(*summary, file);
 }
 

@@ -89,6 +89,8 @@ class Archives(unittest.TestCase):
             self.assertEqual(status, 0)
             self.assertIn("tolerance m", printed)
             self.assertIn("193 x 193", printed)
+            self.assertEqual("tiles/{l}/{x}/{y}.glb, zooms 0 to 2, clustered" in printed,
+                             name == "x.pmtiles")
             status, printed, said = terrane("--quiet", "verify", self.folder / name)
             self.assertEqual(status, 0, printed + said)
             self.assertIn("All invariants hold", printed)
