@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdint>
 #include <future>
 #include <memory>
 #include <string>
@@ -161,7 +162,7 @@ TEST_F(SlowClients, ReadersDoNotBlockOthers) {
 // zlib's level 4 makes some 60 MB/s of this: half a second for each of the four.
 TEST_F(SlowClients, WhoWantLargeTextsCompressedDoNotBlockOthers) {
   std::string text;
-  for (int i = 0; text.size() < 30'000'000; ++i) text += std::to_string(i * 7919) + ",";
+  for (std::int64_t i = 0; text.size() < 30'000'000; ++i) text += std::to_string(i * 7919) + ",";
   for (const char* name : {"1.json", "2.json", "3.json", "4.json"}) folder_.write(name, text);
   const RunningServer server(options());
   std::vector<std::future<testing::RawAnswer>> large;
