@@ -1,14 +1,21 @@
 // What a frame of a merge tree costs: how it grows with what changes, and with the model.
+// terrane_frames: hills of 10,000 to 3 million triangles. terrane_frames FILE.tree TRIANGLES: that
+// tree, seen from all around in steps of 1 degree, coarse behind and fine along silhouettes.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "hierarchy/merge/build_merge_tree.h"
 #include "hierarchy/merge/merge_front.h"
+#include "hierarchy/merge/tree_file.h"
 #include "hierarchy/merge/triangle_budget.h"
 
 namespace terrane::hierarchy {
@@ -96,7 +103,53 @@ void run() {
   for (const MergeTree& tree : trees) measure_frames(tree, 6000);
 }
 
+/// A turn about a model, a degree a frame: medians and largest of 360 frames.
+void turn_about(const MergeTree& tree, std::uint32_t triangles) {
+  Eigen::Vector3i low = tree.points.front(), high = low;
+  for (const Eigen::Vector3i& p : tree.points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Eigen::Vector3d middle = tree.lattice.relative(low + (high - low) / 2);
+  const double reach = tree.lattice.relative(high - low).norm() / 2;
+  const auto camera = [&](int degrees) {
+    const double u = degrees * std::numbers::pi / 180;
+    return Camera::looking_at(
+        middle + reach * Eigen::Vector3d(2 * std::cos(u), 2 * std::sin(u), 0.8), middle);
+  };
+  ViewCriteria criteria{.tolerance_px = 1, .back_faces = true, .silhouette_px = 0.5};
+  MergeFront front(tree);
+  const double tolerance_px = settle_on(triangles, tree, camera(0), criteria, front);
+  criteria = at_tolerance(criteria, tolerance_px);
+  std::vector<double> seconds, changes;
+  double shown = 0;
+  for (int frame = 1; frame <= 360; ++frame) {
+    front.display().forget_changes();
+    const ViewJudge judge(tree, camera(frame), criteria);
+    const Clock::time_point before = Clock::now();
+    const UpdateStatistics did = front.update(judge);
+    seconds.push_back(seconds_since(before));
+    changes.push_back(did.splits + did.merges);
+    shown += front.display().triangle_count() / 360.0;
+  }
+  std::ranges::sort(seconds);
+  std::ranges::sort(changes);
+  std::printf("%u triangles, %u levels: %.2f px, %.0f shown, %.0f changes a frame, median %.3f ms, "
+              "largest %.3f ms\n",
+              tree.full_triangle_count(), tree.level_count(), tolerance_px, shown, changes[180],
+              1e3 * seconds[180], 1e3 * seconds.back());
+}
+
 }  // namespace
 }  // namespace terrane::hierarchy
 
-int main() { terrane::hierarchy::run(); }
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    terrane::hierarchy::run();
+    return 0;
+  }
+  std::ifstream file(argv[1], std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  terrane::hierarchy::turn_about(terrane::hierarchy::decode_tree(bytes, argv[1]),
+                                 static_cast<std::uint32_t>(std::atoi(argv[2])));
+}
