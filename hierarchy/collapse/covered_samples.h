@@ -14,7 +14,6 @@ namespace terrane::hierarchy {
 struct CoveredSample {
   float column = 0;  ///< in cells; whole or not, to 1/128 cell up to 131,072 cells
   float row = 0;
-  std::uint32_t next = ~std::uint32_t{0};  ///< the next one under the same triangle
   double height_m = 0;
 };
 
@@ -22,8 +21,6 @@ struct CoveredSample {
 /// where it lies on an edge.
 class CoveredSamples {
  public:
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-
   /// Sorts the samples of \p field into the triangles, those that lie beside the outline by less
   /// than the field's slack too. Samples under no triangle are left out.
   CoveredSamples(const SampleField& field, std::span<const TerrainVertex> vertices,
@@ -31,21 +28,28 @@ class CoveredSamples {
 
   const CoveredSample& operator[](std::uint32_t sample) const { return samples_[sample]; }
 
-  /// The samples under a triangle are first(t), next(first(t)), ... until kNone.
-  std::uint32_t first(TriangleId t) const { return first_[t]; }
-  std::uint32_t next(std::uint32_t sample) const { return samples_[sample].next; }
-
-  void clear(TriangleId t) { first_[t] = kNone; }
-  void add(TriangleId t, std::uint32_t sample) {
-    samples_[sample].next = first_[t];
-    first_[t] = sample;
+  /// The numbers of the samples under a triangle; valid until the next share_out().
+  std::span<const std::uint32_t> under(TriangleId t) const {
+    return std::span(numbers_).subspan(lists_[t].first, lists_[t].count);
   }
 
+  void clear(TriangleId t) { lists_[t] = {}; }
+
+  /// Gives samples to triangles that share them anew: samples[k] to triangles[sector[k]].
+  void share_out(std::span<const TriangleId> triangles, std::span<const std::uint32_t> samples,
+                 std::span<const std::uint32_t> sector);
+
  private:
-  void claim(TriangleId t, const FieldSample& sample);
+  struct List {
+    std::size_t first = 0;  // in numbers_
+    std::uint32_t count = 0;
+  };
+  /// Leaves out what no list holds any more.
+  void compact();
 
   std::vector<CoveredSample> samples_;
-  IdVector<TriangleId, std::uint32_t> first_;
+  IdVector<TriangleId, List> lists_;
+  std::vector<std::uint32_t> numbers_;  // lists one after the other, with gaps
 };
 
 }  // namespace terrane::hierarchy

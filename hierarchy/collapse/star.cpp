@@ -77,15 +77,18 @@ void Star::gather_samples(const Stencil& stencil, const HalfedgeMesh& mesh,
 
 void Star::gather_samples(TriangleId triangle, const CoveredSamples& samples) {
   const double column = column_of(origin_.plan), row = row_of(origin_.plan);
-  for (auto s = samples.first(triangle); s != CoveredSamples::kNone; s = samples.next(s)) {
-    if (sample_count_ + kLanes > samples_.size()) make_room_for_samples();
+  const std::span<const std::uint32_t> under = samples.under(triangle);
+  while (sample_count_ + under.size() + kLanes > samples_.size()) make_room_for_samples();
+  std::size_t k = sample_count_;
+  for (const std::uint32_t s : under) {
     const CoveredSample& sample = samples[s];
-    samples_[sample_count_] = s;
-    sample_x_[sample_count_] = static_cast<float>(sample.column - column);
-    sample_y_[sample_count_] = static_cast<float>(row - sample.row);
-    sample_z_[sample_count_] = static_cast<float>(sample.height_m - origin_.height_m);
-    ++sample_count_;
+    samples_[k] = s;
+    sample_x_[k] = static_cast<float>(sample.column - column);
+    sample_y_[k] = static_cast<float>(row - sample.row);
+    sample_z_[k] = static_cast<float>(sample.height_m - origin_.height_m);
+    ++k;
   }
+  sample_count_ = k;
 }
 
 void Star::make_room_for_samples() {

@@ -40,8 +40,10 @@ class StarJudge {
   bool holds(const Star& star, const Place& centre, const CoveredSamples& samples,
              double tolerance_m);
 
-  /// The sector that a sample of the star is in, around the place that last held.
-  std::uint32_t sector(std::size_t sample) const { return sectors_[sample]; }
+  /// For each sample of the star the sector that it is in, around the place that last held.
+  std::span<const std::uint32_t> sectors(const Star& star) const {
+    return std::span(sectors_).first(star.sample_count());
+  }
 
  private:
   std::vector<float> spokes_;  // see Spokes in the source

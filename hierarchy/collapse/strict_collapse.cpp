@@ -280,10 +280,11 @@ class StrictCollapse {
   }
 
   void hand_over_samples() {
-    for (std::size_t k = 0; k < star_.sector_count(); ++k) samples_.clear(star_.triangle(k));
-    for (std::size_t k = 0; k < star_.sample_count(); ++k) {
-      samples_.add(star_.triangle(judge_.sector(k)), star_.sample(k));
+    for (const HalfedgeId h : stencil_.dying_span()) samples_.clear(HalfedgeMesh::triangle(h));
+    if (stencil_.core_size == 3) {
+      samples_.clear(HalfedgeMesh::triangle(mesh_.opposite(stencil_.dying[0])));
     }
+    samples_.share_out(star_.triangles(), star_.samples(), judge_.sectors(star_));
   }
 
   VertexId target_of(std::uint32_t v) {

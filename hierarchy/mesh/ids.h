@@ -29,6 +29,8 @@ class IdVector {
   const T& operator[](Id id) const { return values_[index(id)]; }
   std::size_t size() const { return values_.size(); }
   void push_back(const T& value) { values_.push_back(value); }
+  auto begin() { return values_.begin(); }
+  auto end() { return values_.end(); }
   auto begin() const { return values_.begin(); }
   auto end() const { return values_.end(); }
 
