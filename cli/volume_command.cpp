@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/terminal_progress.h"
 #include "core/errors.h"
+#include "hierarchy/volume/encode_cells.h"
 #include "hierarchy/volume/encode_vtu.h"
 #include "hierarchy/volume/material_sums.h"
 #include "hierarchy/volume/section.h"
@@ -17,6 +18,7 @@
 #include "model/encode_ply.h"
 #include "model/section_svg.h"
 #include "tiler/whole_file.h"
+#include "viewer/server/viewer_files.h"
 
 namespace terrane::cli {
 namespace {
@@ -72,6 +74,16 @@ ordered_json describe_errors(const MaterialVolume& volume, const model::ModelSet
   return {{"surfaces", interfaces}, {"fields", fields}};
 }
 
+/// Sides that a material lies on: the first one whose sides all hold is there.
+ordered_json describe_where(const MaterialVolume& volume, const Material& material) {
+  ordered_json where = ordered_json::array();
+  for (const Side& side : material.where) {
+    where.push_back({{"surface", volume.model().interfaces[index(side.interface)]->name()},
+                     {"side", side.is_below ? "below" : "above"}});
+  }
+  return where;
+}
+
 ordered_json describe_materials(const MaterialVolume& volume) {
   ordered_json materials = ordered_json::array();
   const std::vector<MaterialSum> sums = sum_materials(volume);
@@ -80,7 +92,10 @@ ordered_json describe_materials(const MaterialVolume& volume) {
     for (std::size_t f = 0; f < volume.field_count(); ++f) {
       integrals[volume.model().fields[f].name] = sums[m].integral[f];
     }
-    materials.push_back({{"name", volume.model().materials[m].name},
+    const Material& material = volume.model().materials[m];
+    materials.push_back({{"name", material.name},
+                         {"where", describe_where(volume, material)},
+                         {"is_empty", material.is_empty},
                          {"volume_m3", sums[m].volume},
                          {"integrals", integrals}});
   }
@@ -104,6 +119,17 @@ ordered_json describe(const MaterialVolume& volume, const model::ModelSettings& 
   json.update(describe_errors(volume, settings, model.tolerances));
   json["materials"] = describe_materials(volume);
   return json;
+}
+
+ordered_json describe_arrays(const EncodedCells& cells) {
+  ordered_json arrays = ordered_json::object();
+  for (const PlacedArray& array : cells.arrays) {
+    arrays[array.name] = {{"type", array.type},
+                          {"components", array.components},
+                          {"count", array.count},
+                          {"offset", array.offset}};
+  }
+  return arrays;
 }
 
 void print(const ordered_json& json) {
@@ -148,8 +174,12 @@ void write_sections(const MaterialVolume& volume, const model::ModelSettings& se
 }
 
 // volume.json comes last: where it is, all is there
-void write(const MaterialVolume& volume, const model::ModelSettings& settings,
-           const ordered_json& json, const std::filesystem::path& out) {
+void write(const MaterialVolume& volume, const model::ModelSettings& settings, ordered_json& json,
+           const std::filesystem::path& out) {
+  viewer::write_volume_page(out);
+  const EncodedCells cells = encode_cells(volume);
+  json["cells_bin"] = describe_arrays(cells);
+  tiler::write_whole_file(out / "cells.bin", cells.bytes);
   tiler::write_whole_file(out / "cells.vtu", encode_cells_vtu(volume));
   tiler::write_whole_file(out / "materials.vtu", encode_materials_vtu(volume));
   for (std::uint8_t i = 0; i < volume.interface_count(); ++i) {
@@ -175,7 +205,7 @@ void run(const VolumeCommand& command, const CommonOptions& common) {
   MaterialVolume volume(model.volume);
   const bool is_within =
       volume.refine(model.tolerances, command.most_cells.value_or(settings.most_cells));
-  const ordered_json json = describe(volume, settings, model, is_within);
+  ordered_json json = describe(volume, settings, model, is_within);
   write(volume, settings, json, command.out);
   print(json);
 }

@@ -7,6 +7,8 @@
 #include <bit>
 #include <cstring>
 
+#include "hierarchy/volume/leaf_numbering.h"
+
 namespace terrane::hierarchy::volume {
 namespace {
 
@@ -113,26 +115,6 @@ std::int8_t only_material(Mask materials) {
                                         : std::int8_t{-1};
 }
 
-/// Vertices that are there, numbered without gaps.
-struct Numbering {
-  std::vector<NodeId> nodes;
-  std::vector<std::int64_t> number;  ///< by node
-};
-
-// In the order that the tree's leaves meet them: it does not depend on the history of changes.
-Numbering number_nodes(const MaterialVolume& volume, const std::vector<CellId>& leaves) {
-  Numbering numbering{{}, std::vector<std::int64_t>(volume.mesh().node_capacity(), -1)};
-  for (const CellId leaf : leaves) {
-    for (const NodeId node : volume.mesh().corners(leaf)) {
-      auto& number = numbering.number[index(node)];
-      if (number >= 0) continue;
-      number = static_cast<std::int64_t>(numbering.nodes.size());
-      numbering.nodes.push_back(node);
-    }
-  }
-  return numbering;
-}
-
 template <class T, class Id, class F>
 std::vector<T> each(const std::vector<Id>& ids, F&& f) {
   std::vector<T> values;
@@ -184,7 +166,7 @@ void add_cell_data(VtuText& text, const MaterialVolume& volume, const std::vecto
 
 std::string encode_cells_vtu(const MaterialVolume& volume) {
   const std::vector<CellId> leaves = volume.mesh().leaves_in_tree_order();
-  const Numbering numbering = number_nodes(volume, leaves);
+  const LeafNumbering numbering = number_nodes(volume.mesh(), leaves);
   std::vector<double> points;
   for (const NodeId node : numbering.nodes) append(points, volume.mesh().position(node));
   std::vector<std::int64_t> corners;

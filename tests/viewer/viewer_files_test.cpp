@@ -39,6 +39,15 @@ TEST_F(WriteViewer, WritesTheFrontPageAndWhatItLoads) {
   }
 }
 
+TEST_F(WriteViewer, WritesThePageOfVolumesLikewise) {
+  write_volume_page(out_.path());
+  const std::string page = content_of(out_.path() / "index.html");
+  EXPECT_THAT(page, ::testing::HasSubstr("assets/volume.js"));
+  for (const ViewerFile& file : volume_page_files()) {
+    EXPECT_EQ(content_of(out_.path() / file.path), file.content) << file.path;
+  }
+}
+
 TEST_F(WriteViewer, LeavesNothingElseBehind) {
   write_viewer(out_.path());
   std::size_t files = 0;

@@ -1,16 +1,16 @@
 enable_language(ASM)
 
-# terrane_embed_files(OUT_VAR FROM DIR FILES relative/path...)
+# terrane_embed_files(OUT_VAR FUNCTION NAME FROM DIR FILES relative/path...)
 #
-# Puts the content of files into the library and defines viewer_files() over them. The assembler
+# Puts the content of files into the library and defines the function of viewer_files.h over them. The assembler
 # reads them as they are (.incbin): a megabyte of C++ array would take the compiler seconds.
 function(terrane_embed_files out_var)
-  cmake_parse_arguments(arg "" "FROM" "FILES" ${ARGN})
-  set(assembly ${CMAKE_CURRENT_BINARY_DIR}/embedded_files.S)
-  set(source ${CMAKE_CURRENT_BINARY_DIR}/embedded_files.cpp)
+  cmake_parse_arguments(arg "" "FUNCTION;FROM" "FILES" ${ARGN})
+  set(assembly ${CMAKE_CURRENT_BINARY_DIR}/embedded_${arg_FUNCTION}.S)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/embedded_${arg_FUNCTION}.cpp)
   set(count 0)
   foreach(file IN LISTS arg_FILES)
-    set(symbol terrane_embedded_${count})
+    set(symbol terrane_${arg_FUNCTION}_${count})
     string(APPEND symbols
       "  .global ${symbol}, ${symbol}_end\n"
       "${symbol}:\n  .incbin \"${arg_FROM}/${file}\"\n${symbol}_end:\n  .byte 0\n")
@@ -33,7 +33,7 @@ ${declarations}}
 
 namespace terrane::viewer {
 
-std::span<const ViewerFile> viewer_files() {
+std::span<const ViewerFile> ${arg_FUNCTION}() {
   static const ViewerFile kFiles[] = {
 ${entries}  };
   return kFiles;

@@ -4,5 +4,6 @@
 namespace terrane::viewer {
 
 std::span<const ViewerFile> viewer_files() { return {}; }
+std::span<const ViewerFile> volume_page_files() { return {}; }
 
 }  // namespace terrane::viewer

@@ -50,13 +50,17 @@ void write_whole(const fs::path& path, std::string_view content) {
   }
 }
 
-}  // namespace
-
-void write_viewer(const fs::path& out) {
-  for (const ViewerFile& file : viewer_files()) {
+void write_all(std::span<const ViewerFile> files, const fs::path& out) {
+  for (const ViewerFile& file : files) {
     const fs::path path = out / file.path;
     if (!holds_already(path, file.content)) write_whole(path, file.content);
   }
 }
+
+}  // namespace
+
+void write_viewer(const fs::path& out) { write_all(viewer_files(), out); }
+
+void write_volume_page(const fs::path& out) { write_all(volume_page_files(), out); }
 
 }  // namespace terrane::viewer

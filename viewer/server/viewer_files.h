@@ -15,11 +15,18 @@ struct ViewerFile {
 /// The web viewer that is part of this binary; empty if it was built without (TERRANE_WEB=OFF).
 std::span<const ViewerFile> viewer_files();
 
+/// The page that cuts volumes, likewise.
+std::span<const ViewerFile> volume_page_files();
+
 /// Writes viewer_files() below a folder, which is made if it is missing. Each file gets a
 /// temporary name first and is then renamed, so that none is ever half-written; a file that holds
 /// the same content already is left alone.
 ///
 /// \throws OutputError if a file cannot be written.
 void write_viewer(const std::filesystem::path& out);
+
+/// The same with volume_page_files().
+/// \throws OutputError if a file cannot be written.
+void write_volume_page(const std::filesystem::path& out);
 
 }  // namespace terrane::viewer

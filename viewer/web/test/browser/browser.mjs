@@ -37,9 +37,15 @@ export function failures() {
  * Opens a viewer and waits for its tileset.
  *
  * @param prepare what to do with the page before it opens
+ * @param started what is true in the page once its data is there
  * @returns the page, and what goes wrong in it: console errors, and requests that fail
  */
-export async function open(context, address, tolerance, prepare = () => {}) {
+export async function open(
+  context,
+  address,
+  tolerance,
+  {prepare = () => {}, started = () => window.terrane} = {},
+) {
   const problems = {console: [], requests: []};
   const page = await context.newPage();
   await page.route('**', keepLocal);
@@ -49,7 +55,7 @@ export async function open(context, address, tolerance, prepare = () => {}) {
   url.searchParams.set('antialias', 'off');
   url.searchParams.set('tolerance', tolerance);
   await page.goto(url.href);
-  await page.waitForFunction(() => window.terrane, undefined, {timeout: kReadyMs});
+  await page.waitForFunction(started, undefined, {timeout: kReadyMs});
   return {page, problems};
 }
 

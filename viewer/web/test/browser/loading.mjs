@@ -67,7 +67,7 @@ async function run(folder) {
     const expected = await finalPicture(atOnce.page);
     await atOnce.page.close();
 
-    const {page, problems} = await open(context, server.url, 4, delayTiles);
+    const {page, problems} = await open(context, server.url, 4, {prepare: delayTiles});
     await page.evaluate((pose) => window.terrane.setPose(pose), kPose);
     await watchLoading(page);
     await finalPicture(page);
