@@ -28,6 +28,7 @@ struct BuildCommand {
   bool force = false;
   std::optional<int> tile_cells, levels_per_octave, jobs;
   std::optional<double> tolerance_m;
+  GeodeticOptionsGiven geodetic;
 };
 
 template <class From, class To>
@@ -46,7 +47,13 @@ BuildSettings resolve(const BuildCommand& command) {
   override_with(command.jobs, settings.build.jobs);
   apply(command.tiles, settings.build.format);
   apply(command.tiles, settings.drape);
+  apply(command.geodetic, settings.geodetic);
   tiler::check(settings.build);
+  check(settings.geodetic);
+  if (settings.geodetic.is_geodetic() && command.tile_cells) {
+    throw ConfigError(
+        "--tile-cells: tiles of --scheme geodetic have 64 cells a side. Leave it away");
+  }
   if (settings.dem.empty()) {
     throw ConfigError("no DEM given. Name one, or set ingest.dem in the file of --config");
   }
@@ -78,8 +85,14 @@ void run(const BuildCommand& command, const CommonOptions& common) {
   settings.build.texture = texture.get();
   const HeightStatistics statistics = ingest::scan_heights(*dem, *progress);
   tiler::OutputFolder(command.out).claim(command.force);
-  viewer::write_viewer(command.out);
   tiler::write_whole_file(command.out / "build.toml", to_toml(settings));
+  if (settings.geodetic.is_geodetic()) {
+    report(
+        build_geodetic(*dem, statistics, settings.geodetic, settings.build, command.out, *progress),
+        command.out);
+    return;
+  }
+  viewer::write_viewer(command.out);
   report(tiler::build(dem->heights(), dem->place(), statistics, settings.build, command.out,
                       *progress),
          command.out);
@@ -100,6 +113,7 @@ void add_build_command(CLI::App& app, const CommonOptions& common) {
   build->add_option(
       "--levels-per-octave", command->levels_per_octave,
       "Levels in each doubling of the tolerance, 1 to 4: finer steps between them [1]");
+  add_geodetic_options(*build, command->geodetic);
   build->add_option("--jobs", command->jobs, "Threads; 0: one per core [0]");
   add_tile_options(*build, command->tiles);
   build->add_option("--config", command->config,

@@ -90,6 +90,15 @@ const std::map<std::string, Reader>& readers() {
        [](const Setting& s, BuildSettings& to) { to.build.tile_cells = s.whole_number(); }},
       {"build.levels_per_octave",
        [](const Setting& s, BuildSettings& to) { to.build.levels_per_octave = s.whole_number(); }},
+      {"build.scheme", [](const Setting& s, BuildSettings& to) { to.geodetic.scheme = s.text(); }},
+      {"build.format", [](const Setting& s, BuildSettings& to) { to.geodetic.format = s.text(); }},
+      {"geodetic.geoid", [](const Setting& s, BuildSettings& to) { to.geodetic.geoid = s.text(); }},
+      {"geodetic.max_zoom",
+       [](const Setting& s, BuildSettings& to) { to.geodetic.max_zoom = s.whole_number(); }},
+      {"geodetic.fill_m",
+       [](const Setting& s, BuildSettings& to) { to.geodetic.fill_m = s.real_number(); }},
+      {"geodetic.water",
+       [](const Setting& s, BuildSettings& to) { to.geodetic.water = s.texts(); }},
       {"build.jobs", [](const Setting& s, BuildSettings& to) { to.build.jobs = s.whole_number(); }},
       {"tiles.implicit",
        [](const Setting& s, BuildSettings& to) { to.build.format.is_implicit = s.truth(); }},
@@ -148,6 +157,15 @@ std::string list_of(const std::vector<std::string>& sources) {
   return text + "]";
 }
 
+std::string geodetic_toml(const GeodeticSettings& settings) {
+  std::string text = "\n[geodetic]\n";
+  if (!settings.geoid.empty()) text += "geoid = " + quoted(settings.geoid) + "\n";
+  if (settings.max_zoom) text += fmt::format("max_zoom = {}\n", *settings.max_zoom);
+  text += fmt::format("fill_m = {}\n", settings.fill_m);
+  if (!settings.water.empty()) text += "water = " + list_of(settings.water) + "\n";
+  return text;
+}
+
 }  // namespace
 
 void read_settings(const std::filesystem::path& file, BuildSettings& settings) {
@@ -185,6 +203,10 @@ std::string to_toml(const BuildSettings& settings) {
   text += fmt::format("\n[build]\ntolerance_m = {}\ntile_cells = {}\nlevels_per_octave = {}\n",
                       settings.build.tolerance_m, settings.build.tile_cells,
                       settings.build.levels_per_octave);
+  if (settings.geodetic.is_geodetic()) {
+    text += "scheme = " + quoted(settings.geodetic.scheme) +
+            "\nformat = " + quoted(settings.geodetic.format) + "\n";
+  }
   text += "\n[tiles]\n" + to_toml(settings.build.format);
   if (!settings.drape.images.empty()) {
     text += fmt::format("texture = {}\ntexture_format = \"{}\"\n", list_of(settings.drape.images),
@@ -193,6 +215,7 @@ std::string to_toml(const BuildSettings& settings) {
   if (!settings.build.format.attribution.empty()) {
     text += "attribution = " + quoted(settings.build.format.attribution) + "\n";
   }
+  if (settings.geodetic.is_geodetic()) text += geodetic_toml(settings.geodetic);
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/geodetic_build.h"
 #include "ingest/dem.h"
 #include "ingest/drape.h"
 #include "tiler/build.h"
@@ -16,6 +17,7 @@ struct BuildSettings {
   ingest::OpenOptions ingest;
   ingest::DrapeOptions drape;
   tiler::BuildOptions build;
+  GeodeticSettings geodetic;
 };
 
 /// Reads settings from TOML, over those that are given. Keys: see config/.

@@ -26,6 +26,24 @@ void print_row(std::string_view name, const std::string& value) {
   fmt::print("{:<16}{}\n", name, value);
 }
 
+/// Terrain tiles of the geodetic scheme.
+void describe_terrain(const nlohmann::json& json) {
+  print_row("written by", json.at("generator").get<std::string>());
+  print_row("terrain", json.at("source").get<std::string>());
+  print_row("resampling", fmt::format("at most {:.2f} m off the DEM's samples, RMS {:.2f} m",
+                                      json.at("resampling").at("max_error_m").get<double>(),
+                                      json.at("resampling").at("rms_error_m").get<double>()));
+  fmt::print("\n{:>5} {:>12} {:>12} {:>14} {:>7} {:>10} {:>9}\n", "zoom", "tolerance m",
+             "max error m", "held to", "tiles", "triangles", "MB");
+  for (const auto& zoom : json.at("zooms")) {
+    fmt::print("{:>5} {:>12.3f} {:>12.3f} {:>14} {:>7} {:>10} {:>9.2f}\n",
+               zoom.at("zoom").get<int>(), zoom.at("tolerance_m").get<double>(),
+               zoom.at("max_error_m").get<double>(), zoom.at("held_to").get<std::string>(),
+               zoom.at("tiles").get<std::int64_t>(), zoom.at("triangles").get<std::int64_t>(),
+               zoom.at("bytes").get<double>() / 1e6);
+  }
+}
+
 /// The middle of the data set, for a map.
 std::string place_of(const nlohmann::json& frame) {
   if (frame.at("kind") == "local") {
@@ -80,7 +98,8 @@ void describe_levels(const nlohmann::json& json) {
 /// terrane.json of a folder or an archive; a damaged one is the input's fault.
 void describe_summary(const std::string& text, const std::filesystem::path& out) {
   try {
-    describe_levels(nlohmann::json::parse(text));
+    const auto json = nlohmann::json::parse(text);
+    json.at("format") == "terrane-geodetic/1" ? describe_terrain(json) : describe_levels(json);
   } catch (const nlohmann::json::exception& error) {
     throw InputError(fmt::format("{}: its terrane.json is damaged ({}). Run 'terrane build' again",
                                  out.string(), error.what()));
@@ -121,6 +140,7 @@ void describe_dem(const InfoCommand& command, const CommonOptions& common) {
                                    about.crs_unit));
   print_row("CRS", about.crs_name.empty() ? "none: local metres" : about.crs_name);
   if (!about.datum_shift.empty()) print_row("to WGS84", about.datum_shift);
+  print_row("heights over", about.vertical_crs.empty() ? "not said" : about.vertical_crs);
   print_row("band", fmt::format("{} of {}, {}", about.band, about.band_count, about.data_type));
   print_row("heights in",
             fmt::format("{} (from {})", name_of(about.vertical_unit), about.vertical_unit_origin));

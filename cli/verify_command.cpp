@@ -34,6 +34,12 @@ void check_finished(const std::filesystem::path& out) {
 /// A tile set of another DEM would fail in a thousand places: say the one thing that is wrong.
 void check_same_dem(const std::filesystem::path& out, const ingest::Dem& dem, Progress& progress) {
   const auto summary = nlohmann::json::parse(tiler::read_whole_file(out / "terrane.json"));
+  if (summary.at("format") == "terrane-geodetic/1") {
+    throw InputError(fmt::format(
+        "{}: holds terrain of --scheme geodetic, which verify does not judge. Its errors are in "
+        "terrane.json: see terrane info",
+        out.string()));
+  }
   const auto built_from = summary.at("dem").at("fingerprint").get<std::string>();
   if (ingest::scan_heights(dem, progress).fingerprint == built_from) return;
   throw InputError(

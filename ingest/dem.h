@@ -32,6 +32,9 @@ struct OpenOptions {
   std::string crs;
 };
 
+/// What DemDescription::vertical_crs says of heights over the WGS 84 ellipsoid.
+inline constexpr const char* kEllipsoidalHeight = "ellipsoid";
+
 /// What a DEM is made of, to show to its user.
 struct DemDescription {
   std::vector<std::string> files;  ///< as given to open_dem()
@@ -49,6 +52,7 @@ struct DemDescription {
   double row_spacing = 1;            ///< distance of two samples of a column, in units of the CRS
   std::string crs_name;              ///< empty without a CRS
   std::string crs_unit = "metre";    ///< of the two spacings
+  std::string vertical_crs;          ///< name of the CRS of heights; empty: the file does not say
   std::string datum_shift;           ///< operation that leads to WGS84; empty without a CRS
   std::int64_t block_columns = 1;    ///< samples that the file stores together
   std::int64_t block_rows = 1;

@@ -11,6 +11,7 @@
 #include "core/errors.h"
 #include "ingest/datum_shift.h"
 #include "ingest/gdal_scope.h"
+#include "ingest/geographic_inverse.h"
 
 namespace terrane::ingest {
 namespace {
@@ -104,111 +105,6 @@ Map affine_inverse(const Georeference& place) {
   };
 }
 
-/// Longitudes and latitudes to columns and rows: Newton's method on the DEM's own map.
-class GeographicInverse {
- public:
-  GeographicInverse(const Georeference& place, GridShape shape) : place_(place), shape_(shape) {
-    constexpr int kProbesPerSide = 17;
-    std::vector<GridPosition> probes;
-    for (int j = 0; j < kProbesPerSide; ++j) {
-      for (int i = 0; i < kProbesPerSide; ++i) {
-        probes.push_back(
-            {last_column() * i / (kProbesPerSide - 1), last_row() * j / (kProbesPerSide - 1)});
-      }
-    }
-    const std::vector<LonLat> at = place.to_lon_lat(probes);
-    middle_deg_ = at[at.size() / 2].longitude_deg;
-    for (const LonLat& p : at) {
-      const double x = unwrapped(p.longitude_deg);
-      west_ = std::min(west_, x);
-      east_ = std::max(east_, x);
-      south_ = std::min(south_, p.latitude_deg);
-      north_ = std::max(north_, p.latitude_deg);
-    }
-    const double margin_deg = 0.02 * std::max(east_ - west_, north_ - south_);
-    west_ -= margin_deg;
-    east_ += margin_deg;
-    south_ -= margin_deg;
-    north_ += margin_deg;
-  }
-
-  /// Longitudes without a jump over the data set.
-  double unwrapped(double longitude_deg) const {
-    return middle_deg_ + std::remainder(longitude_deg - middle_deg_, 360.0);
-  }
-  OGRPolygon area() const { return box(west_, south_, east_, north_); }
-  std::string described() const {
-    return fmt::format("longitudes {:.3f} to {:.3f}, latitudes {:.3f} to {:.3f}", west_, east_,
-                       south_, north_);
-  }
-
-  /// \pre the points lie in area().
-  Points to_grid(const Points& points) const {
-    constexpr int kMostSteps = 20;
-    constexpr double kExact_cells = 1e-7;
-    std::vector<GridPosition> at(points.size(), {last_column() / 2, last_row() / 2});
-    for (int step = 0; step < kMostSteps; ++step) {
-      double largest_cells = 0;
-      const std::vector<Jet> here = jets(at);
-      for (std::size_t i = 0; i < at.size(); ++i) {
-        const Jet& jet = here[i];
-        const double x = unwrapped(points[i].x) - jet.x, y = points[i].y - jet.y;
-        const double scale = 1 / (jet.xc * jet.yr - jet.yc * jet.xr);
-        const double columns = (x * jet.yr - y * jet.xr) * scale;
-        const double rows = (y * jet.xc - x * jet.yc) * scale;
-        at[i] = {bounded(at[i].column + columns, last_column()),
-                 bounded(at[i].row + rows, last_row())};
-        largest_cells = std::max({largest_cells, std::abs(columns), std::abs(rows)});
-      }
-      if (largest_cells < kExact_cells) break;
-    }
-    Points result;
-    for (const GridPosition& p : at) result.push_back({p.column, p.row});
-    return result;
-  }
-
- private:
-  /// Longitude and latitude and their change per column and row.
-  struct Jet {
-    double x, y, xc, yc, xr, yr;
-  };
-
-  std::vector<Jet> jets(const std::vector<GridPosition>& at) const {
-    constexpr double kHalf_cells = 0.5;
-    std::vector<GridPosition> around;
-    for (const GridPosition& p : at) {
-      around.push_back(p);
-      around.push_back({p.column + kHalf_cells, p.row});
-      around.push_back({p.column - kHalf_cells, p.row});
-      around.push_back({p.column, p.row + kHalf_cells});
-      around.push_back({p.column, p.row - kHalf_cells});
-    }
-    const std::vector<LonLat> places = place_.to_lon_lat(around);
-    std::vector<Jet> result;
-    for (std::size_t i = 0; i < places.size(); i += 5) {
-      const LonLat* p = &places[i];
-      result.push_back({unwrapped(p[0].longitude_deg), p[0].latitude_deg,
-                        std::remainder(p[1].longitude_deg - p[2].longitude_deg, 360.0),
-                        p[1].latitude_deg - p[2].latitude_deg,
-                        std::remainder(p[3].longitude_deg - p[4].longitude_deg, 360.0),
-                        p[3].latitude_deg - p[4].latitude_deg});
-    }
-    return result;
-  }
-
-  /// A step too far is brought back to the neighbourhood of the grid, where its map is known.
-  static double bounded(double value, double last) {
-    return std::clamp(value, -0.05 * last - 1, 1.05 * last + 1);
-  }
-  double last_column() const { return static_cast<double>(shape_.columns - 1); }
-  double last_row() const { return static_cast<double>(shape_.rows - 1); }
-
-  const Georeference& place_;
-  GridShape shape_;
-  double middle_deg_ = 0;
-  double west_ = INFINITY, east_ = -INFINITY, south_ = INFINITY, north_ = -INFINITY;
-};
-
 bool is_same_crs(const OGRSpatialReference& crs, const std::string& wkt) {
   OGRSpatialReference own;
   own.importFromWkt(wkt.c_str());
@@ -276,7 +172,8 @@ void place_on_grid(VectorLayer& layer, const Georeference& place, GridShape shap
       for (const PlanPosition& p : points) result.push_back({inverse.unwrapped(p.x), p.y});
       return result;
     });
-    clip(layer, inverse.area());
+    const GeographicArea& area = inverse.area();
+    clip(layer, box(area.west_deg, area.south_deg, area.east_deg, area.north_deg));
     refuse_beside(layer, inverse.described());
     move(layer, [&](const Points& points) { return inverse.to_grid(points); });
   } else {
@@ -286,6 +183,15 @@ void place_on_grid(VectorLayer& layer, const Georeference& place, GridShape shap
   constexpr double kMargin_cells = 2;
   clip(layer, box(-kMargin_cells, -kMargin_cells, columns + kMargin_cells, rows + kMargin_cells));
   refuse_beside(layer, fmt::format("{} x {} samples", shape.columns, shape.rows));
+}
+
+void place_on_earth(VectorLayer& layer) {
+  const GdalScope gdal;
+  if (layer.crs.IsEmpty()) {
+    throw InputError(
+        fmt::format("{}: has no CRS. Write it into the layer with ogr2ogr -a_srs", layer.name));
+  }
+  to_lon_lat(layer);
 }
 
 GridSpacing largest_spacing(const Georeference& place, GridShape shape) {

@@ -16,6 +16,10 @@ namespace terrane::ingest {
 ///         Earth, or nothing is left.
 void place_on_grid(VectorLayer& layer, const Georeference& place, GridShape shape);
 
+/// Moves the parts of a layer from its CRS to longitudes and latitudes.
+/// \throws InputError if the layer has no CRS, or one without a place on Earth.
+void place_on_earth(VectorLayer& layer);
+
 /// Largest distances of two neighbouring samples of a row and of a column, in metres.
 struct GridSpacing {
   double column_m, row_m;

@@ -5,6 +5,7 @@
 
 #include "core/errors.h"
 #include "ingest/dem.h"
+#include "ingest/gdal_scope.h"
 #include "ingest/grid_place.h"
 #include "ingest/height_conversion.h"
 #include "ingest/mosaic.h"
@@ -28,6 +29,16 @@ void add_suspects(std::vector<SuspectHeight>& suspects, const RasterFacts& facts
   }
 }
 
+/// What the heights of a compound CRS, or one of three dimensions, are over.
+std::string vertical_crs_of(const OGRSpatialReference& crs) {
+  const GdalScope gdal;
+  if (crs.IsCompound()) {
+    const char* name = crs.GetAttrValue("COMPD_CS|VERT_CS");
+    return name == nullptr ? "a vertical CRS without a name" : name;
+  }
+  return crs.GetAxesCount() == 3 ? kEllipsoidalHeight : "";
+}
+
 std::unique_ptr<Dem> open_rasters(const std::vector<std::string>& sources,
                                   const OpenOptions& options, Progress& progress) {
   auto heights = std::make_unique<Mosaic>(sources, options);
@@ -38,6 +49,7 @@ std::unique_ptr<Dem> open_rasters(const std::vector<std::string>& sources,
   }
   DemDescription description = first.description;
   description.files = sources;
+  description.vertical_crs = vertical_crs_of(first.crs);
   const std::string name = name_of(sources);
   auto place = place_grid(name, heights->shape(), heights->geotransform(), first.crs, options.crs,
                           description, progress);

@@ -92,11 +92,12 @@ class SeamBuild {
   SeamChain run(double tolerance_m) {
     const double step_cells = step_m() / frame_.spacing_m();
     // as in build_tile: the grid frame's straight lines are not quite the world's
-    ChainOptions options{.tolerance_m = kShare * 0.999 * tolerance_m,
-                         .blend_tolerance_m = 0.999 * tolerance_m,
-                         .smallest_altitude_cells = kSmallestAltitudeSteps * step_cells,
-                         .largest_bend_m = std::min(kLargestBend * tolerance_m,
-                                                    kLargestBend_cells * frame_.spacing_m())};
+    ChainOptions options{
+        .tolerance_m = kShare * 0.999 * tolerance_m,
+        .blend_tolerance_m = 0.999 * tolerance_m,
+        .smallest_altitude_cells = source_.lattice.smallest_altitude_steps() * step_cells,
+        .largest_bend_m =
+            std::min(kLargestBend * tolerance_m, kLargestBend_cells * frame_.spacing_m())};
     constexpr int kMostTries = 8;
     for (int tries = 0; tries < kMostTries; ++tries) {
       const ChainResult result =
@@ -152,7 +153,7 @@ class SeamBuild {
     std::vector<LatticePoint> points(strip_.samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
       points[numbers[i]] =
-          source_.lattice.nearest(plumbs[i].base + heights_m[i] * plumbs[i].up, seam_.first.level);
+          source_.lattice.of_sample(positions[i], plumbs[i], heights_m[i], seam_.first.level);
     }
     return points;
   }

@@ -93,7 +93,7 @@ class TileBuild {
     const std::vector<double> heights_m = samples_.heights_m(samples);
     for (std::size_t i = 0; i < rim.size(); ++i) {
       rim[i]->place = frame_.place_of(
-          source_.lattice.nearest(plumbs[i].base + heights_m[i] * plumbs[i].up, tile_.level));
+          source_.lattice.of_sample(positions[i], plumbs[i], heights_m[i], tile_.level));
     }
   }
 
@@ -106,7 +106,7 @@ class TileBuild {
     // the grid frame's straight lines are not quite the world's: 0.1 % saves most second tries
     StrictOptions options{.tolerance_m = 0.999 * tolerance_m};
     options.smallest_altitude_cells =
-        kSmallestAltitudeSteps * source_.lattice.step_m(tile_.level).x() / frame_.spacing_m();
+        source_.lattice.smallest_altitude_steps() * step_m() / frame_.spacing_m();
 
     constexpr int kMostTries = 12;
     for (int tries = 1;; ++tries) {

@@ -19,11 +19,6 @@ struct TileSource {
   const Lattice& lattice;
 };
 
-/// Smallest altitude of a triangle in plan, in lattice steps: where the next level's steps are
-/// twice as wide, rounding moves a vertex by up to 0.71 of them, both ends of an altitude together
-/// by 2.9 steps of this level.
-inline constexpr double kSmallestAltitudeSteps = 4;
-
 /// A tile and where the vertices of its children end in it.
 struct BuiltTile {
   TileMesh mesh;

@@ -1,5 +1,6 @@
 #include "tiler/lattice.h"
 
+#include <cassert>
 #include <cmath>
 
 namespace terrane::tiler {
@@ -77,6 +78,22 @@ LatticePoint Lattice::nearest(const Eigen::Vector3d& world, int level) const {
     return static_cast<std::int64_t>(std::floor(steps + 0.5));
   };
   return {round(world.x() / step.x()), round(world.y() / step.y()), round(world.z() / step.z())};
+}
+
+double Lattice::smallest_altitude_steps() const {
+  // where the next level's steps are twice as wide, rounding moves a vertex by up to 0.71 of them,
+  // both ends of an altitude together by 2.9 steps of this level
+  return 4;
+}
+
+LatticePoint Lattice::of_sample(GridPosition /*sample*/, const Plumb& plumb, double height_m,
+                                int level) const {
+  return nearest(plumb.base + height_m * plumb.up, level);
+}
+
+LatticePoint Lattice::nearest_over_grid(const OverGrid& /*place*/, int /*level*/) const {
+  assert(false);
+  return {};
 }
 
 Eigen::Vector3d Lattice::world(const LatticePoint& point, int level) const {

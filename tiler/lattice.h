@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "core/height_statistics.h"
@@ -26,12 +27,33 @@ class Lattice {
 
   /// \param steps_m  east, north, up for each level.
   explicit Lattice(std::vector<Eigen::Vector3d> steps_m) : steps_m_(std::move(steps_m)) {}
+  virtual ~Lattice() = default;
 
   const Eigen::Vector3d& step_m(int level) const { return steps_m_[level]; }
 
   /// The nearest lattice point; halves go up, so that the answer depends on the place alone.
   LatticePoint nearest(const Eigen::Vector3d& world, int level) const;
-  Eigen::Vector3d world(const LatticePoint& point, int level) const;
+  virtual Eigen::Vector3d world(const LatticePoint& point, int level) const;
+
+  /// Smallest altitude of a triangle in plan that rounding at the next level does not spoil.
+  virtual double smallest_altitude_steps() const;
+
+  /// Where a sample that tiles share is written: a function of the sample alone.
+  virtual LatticePoint of_sample(GridPosition sample, const Plumb& plumb, double height_m,
+                                 int level) const;
+
+  /// A place over the grid (from the first sample of all) and over the ellipsoid.
+  struct OverGrid {
+    GridPosition at;
+    double height_m = 0;
+  };
+  /// Where a point stands over the grid, if the lattice is one of parts of cells; else the world
+  /// has to be asked.
+  virtual std::optional<OverGrid> over_grid(const LatticePoint& /*point*/, int /*level*/) const {
+    return std::nullopt;
+  }
+  /// \pre over_grid() has answers.
+  virtual LatticePoint nearest_over_grid(const OverGrid& place, int level) const;
 
   /// The nearest point of the next level.
   LatticePoint coarsen(const LatticePoint& point, int level) const;

@@ -10,8 +10,11 @@ std::string path_of(const TileId& tile) {
   return fmt::format("{}/{}/{}", tile.level, tile.x, tile.y);
 }
 
-Pyramid::Pyramid(GridShape shape, std::int64_t tile_cells, int levels_per_octave)
-    : shape_(shape), tile_cells_(tile_cells), levels_per_octave_(levels_per_octave) {
+Pyramid::Pyramid(GridShape shape, std::int64_t tile_cells, int levels_per_octave, bool goes_round)
+    : shape_(shape),
+      tile_cells_(tile_cells),
+      levels_per_octave_(levels_per_octave),
+      goes_round_(goes_round) {
   while (cells_per_side(root_level()) < std::max(shape.columns, shape.rows) - 1) {
     level_count_ += levels_per_octave;
   }
@@ -62,6 +65,7 @@ Window Pyramid::window(const TileId& tile, std::int64_t margin) const {
 bool Pyramid::is_on_seam(const TileId& tile, std::int64_t column, std::int64_t row) const {
   const Window own = window(tile);
   const std::int64_t right = own.column + own.columns - 1, bottom = own.row + own.rows - 1;
+  if (goes_round_ && (column == 0 || column == shape_.columns - 1)) return true;
   return (column == own.column && column > 0) || (column == right && right < shape_.columns - 1) ||
          (row == own.row && row > 0) || (row == bottom && bottom < shape_.rows - 1);
 }

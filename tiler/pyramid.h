@@ -21,7 +21,9 @@ class Pyramid {
  public:
   /// \param tile_cells  cells along a leaf tile, 1 or more.
   /// \param levels_per_octave  levels that share a size of tiles, 1 or more.
-  Pyramid(GridShape shape, std::int64_t tile_cells, int levels_per_octave = 1);
+  /// \param goes_round  the last column is the same meridian as the first.
+  Pyramid(GridShape shape, std::int64_t tile_cells, int levels_per_octave = 1,
+          bool goes_round = false);
 
   int level_count() const { return level_count_; }
   int root_level() const { return level_count_ - 1; }
@@ -43,7 +45,8 @@ class Pyramid {
   /// The samples of a tile and up to \p margin more on each side, as far as the DEM goes.
   Window window(const TileId& tile, std::int64_t margin) const;
 
-  /// Does a sample lie on a border that the tile shares with a neighbour's place?
+  /// Does a sample lie on a border that the tile shares with a neighbour's place? Round the Earth,
+  /// too.
   bool is_on_seam(const TileId& tile, std::int64_t column, std::int64_t row) const;
 
  private:
@@ -53,6 +56,7 @@ class Pyramid {
   GridShape shape_;
   std::int64_t tile_cells_;
   int levels_per_octave_;
+  bool goes_round_;
   int level_count_ = 1;
 };
 

@@ -40,6 +40,8 @@ TileFrame::TileFrame(const WorldFrame& world, const Lattice& lattice, const Wind
                      int level)
     : lattice_(lattice),
       level_(level),
+      first_column_(static_cast<double>(window.column)),
+      first_row_(static_cast<double>(window.row)),
       half_columns_(static_cast<double>(window.columns - 1) / 2),
       half_rows_(static_cast<double>(window.rows - 1) / 2) {
   const double wanted_accuracy_m = lattice.step_m(level).minCoeff() / 256;
@@ -114,7 +116,9 @@ void TileFrame::derive(const Window& window) {
   Eigen::Matrix3d world_per_grid;
   world_per_grid << per_column, per_row, middle.up;
   grid_per_world_ = world_per_grid.inverse();
-  spacing_m_ = std::min(per_column.norm(), per_row.norm());
+  // parts of a cell are equal in columns and rows, whatever the parallel
+  spacing_m_ =
+      lattice_.over_grid({}, level_) ? per_row.norm() : std::min(per_column.norm(), per_row.norm());
 
   // second differences over the whole tile: smaller steps would drown in rounding
   const double u = std::max(1.0, static_cast<double>(window.columns - 1) / 2);
@@ -182,22 +186,33 @@ Place TileFrame::solve(const Eigen::Vector3d& at) const {
   return place;
 }
 
+Place TileFrame::place_of(const Lattice::OverGrid& at) const {
+  const double column = at.at.column - first_column_, row = at.at.row - first_row_;
+  return {.plan = grid_point(column, row), .height_m = at.height_m - drop_m(column, row)};
+}
+
 Place TileFrame::place_of(const LatticePoint& point) const {
-  Place place = solve(lattice_.world(point, level_));
+  const auto over_grid = lattice_.over_grid(point, level_);
+  Place place = over_grid ? place_of(*over_grid) : solve(lattice_.world(point, level_));
   place.lattice = point;
   return place;
 }
 
 Place TileFrame::place_of_finer(const LatticePoint& point) const {
-  Place place = solve(lattice_.world(point, level_ - 1));
+  const auto over_grid = lattice_.over_grid(point, level_ - 1);
+  Place place = over_grid ? place_of(*over_grid) : solve(lattice_.world(point, level_ - 1));
   place.lattice = lattice_.coarsen(point, level_ - 1);
   return place;
 }
 
 Place TileFrame::place(GridPoint plan, double height_m) const {
   const double column = hierarchy::column_of(plan), row = hierarchy::row_of(plan);
-  const Plumb here = plumb(column, row);
   const double true_height_m = height_m + drop_m(column, row);
+  if (lattice_.over_grid({}, level_)) {
+    return place_of(lattice_.nearest_over_grid(
+        {{first_column_ + column, first_row_ + row}, true_height_m}, level_));
+  }
+  const Plumb here = plumb(column, row);
   const LatticePoint point = lattice_.nearest(here.base + true_height_m * here.up, level_);
   const Eigen::Vector3d rounding =
       lattice_.world(point, level_) - here.base - true_height_m * here.up;

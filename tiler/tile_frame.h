@@ -54,14 +54,16 @@ class TileFrame final : public hierarchy::Placer {
   double spacing_m() const { return spacing_m_; }
 
  private:
-  static constexpr int kHighestDegree = 9;
+  static constexpr int kHighestDegree = 12;
 
   bool fit(const WorldFrame& world, const Window& window, int degree, double wanted_accuracy_m);
   void derive(const Window& window);
   hierarchy::Place solve(const Eigen::Vector3d& at) const;
+  hierarchy::Place place_of(const Lattice::OverGrid& at) const;
 
   const Lattice& lattice_;
   int level_;
+  double first_column_, first_row_;  // of the tile in the grid
   double half_columns_, half_rows_;  // also the middle, as columns run from 0
   int degree_ = 0;
   /// 6 x (degree + 1)^2: base and up, powers of the column fastest

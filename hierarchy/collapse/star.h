@@ -45,7 +45,9 @@ class Star {
   const float* corner_z() const { return corner_z_.data(); }
   const Place& corner(std::size_t k) const { return *corners_[k]; }
   /// The triangles that the sectors will be.
-  std::span<const TriangleId> triangles() const { return std::span(triangles_).first(sector_count_); }
+  std::span<const TriangleId> triangles() const {
+    return std::span(triangles_).first(sector_count_);
+  }
   /// The triangle that sector k will be.
   TriangleId triangle(std::size_t sector) const { return triangles_[sector]; }
 
@@ -54,7 +56,9 @@ class Star {
   const float* sample_y() const { return sample_y_.data(); }
   const float* sample_z() const { return sample_z_.data(); }
   std::uint32_t sample(std::size_t k) const { return samples_[k]; }
-  std::span<const std::uint32_t> samples() const { return std::span(samples_).first(sample_count_); }
+  std::span<const std::uint32_t> samples() const {
+    return std::span(samples_).first(sample_count_);
+  }
 
   static constexpr std::size_t kLanes = 4;
 

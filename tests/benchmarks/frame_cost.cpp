@@ -134,10 +134,11 @@ void turn_about(const MergeTree& tree, std::uint32_t triangles) {
   }
   std::ranges::sort(seconds);
   std::ranges::sort(changes);
-  std::printf("%u triangles, %u levels: %.2f px, %.0f shown, %.0f changes a frame, median %.3f ms, "
-              "largest %.3f ms\n",
-              tree.full_triangle_count(), tree.level_count(), tolerance_px, shown, changes[180],
-              1e3 * seconds[180], 1e3 * seconds.back());
+  std::printf(
+      "%u triangles, %u levels: %.2f px, %.0f shown, %.0f changes a frame, median %.3f ms, "
+      "largest %.3f ms\n",
+      tree.full_triangle_count(), tree.level_count(), tolerance_px, shown, changes[180],
+      1e3 * seconds[180], 1e3 * seconds.back());
 }
 
 }  // namespace

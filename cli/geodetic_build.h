@@ -1,0 +1,48 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/height_statistics.h"
+#include "core/progress.h"
+#include "ingest/dem.h"
+#include "tiler/build.h"
+
+namespace terrane::cli {
+
+/// What `terrane build` needs to know beyond the rest for tiles of the geodetic quadtree.
+struct GeodeticSettings {
+  std::string scheme = "native";
+  std::string format = "3dtiles";
+  std::string geoid;  ///< "egm96", a file, "none"; empty: as the DEM says
+  std::optional<int> max_zoom;
+  double fill_m = 0;
+  std::vector<std::string> water;
+
+  bool is_geodetic() const { return scheme == "geodetic"; }
+};
+
+/// The command line's part of it; what is not given stays as it is.
+struct GeodeticOptionsGiven {
+  std::optional<std::string> scheme, format, geoid;
+  std::optional<int> max_zoom;
+  std::optional<double> fill_m;
+  std::vector<std::string> water;
+};
+void add_geodetic_options(CLI::App& command, GeodeticOptionsGiven& given);
+void apply(const GeodeticOptionsGiven& given, GeodeticSettings& settings);
+
+/// \throws ConfigError for a format that its scheme does not have, or an option that is of no use.
+void check(const GeodeticSettings& settings);
+
+/// Builds a DEM onto the geodetic quadtree.
+/// \pre \p out was claimed.
+tiler::BuildResult build_geodetic(const ingest::Dem& dem, const HeightStatistics& statistics,
+                                  const GeodeticSettings& settings,
+                                  const tiler::BuildOptions& build,
+                                  const std::filesystem::path& out, Progress& progress);
+
+}  // namespace terrane::cli

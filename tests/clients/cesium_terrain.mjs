@@ -1,0 +1,98 @@
+// cesium_terrain.mjs FOLDER PICTURES: CesiumJS draws every terrain set of FOLDER down to its finest tiles,
+// without an error; the heights that it samples are the DEM's within what terrane states.
+import {existsSync} from 'node:fs';
+import {readFile} from 'node:fs/promises';
+import {join} from 'node:path';
+import {check, failures, lookAt, open, takePicture, withBrowser} from './browser.mjs';
+import {cesiumMounts, kBackground} from './cesium_page.mjs';
+import {servePages} from './page_server.mjs';
+import {terrainSets} from './terrain_set.mjs';
+
+const [folder, pictures] = process.argv.slice(2);
+const server = await servePages(cesiumMounts(folder));
+
+await withBrowser(async (context) => {
+  for (const name of await terrainSets(folder)) await look(context, name);
+});
+check(server.missing.length === 0, `nothing asked for that is not there ${server.missing.slice(0, 3)}`);
+server.close();
+process.exit(failures() > 0 ? 1 : 0);
+
+async function look(context, name) {
+  const layer = JSON.parse(await readFile(join(folder, name, 'layer.json'), 'utf8'));
+  const summary = JSON.parse(await readFile(join(folder, name, 'terrane.json'), 'utf8'));
+  const {page, problems} = await open(context, `${server.url}/cesium.html`);
+  const asked = new Set();
+  page.on('response', (response) => asked.add(new URL(response.url()).pathname));
+  const shown = await page.evaluate(show, {name, bounds: layer.bounds, hasWater: layer.extensions.includes('watermask')});
+  const {drawn, colours} = await lookAt(page, await takePicture(page, join(pictures, `cesium_terrain_${name}.png`)), kBackground);
+
+  const errors = [...shown.errors, ...problems.errors, ...problems.requests];
+  check(errors.length === 0, `${name}: no error ${errors.slice(0, 3)}`);
+  check(shown.isLoaded, `${name}: all tiles are loaded`);
+  const finest = [...asked].filter((path) => path.startsWith(`/tiles/${name}/${layer.maxzoom}/`));
+  check(finest.length > 0 && shown.deepest === layer.maxzoom,
+    `${name}: the finest tiles are drawn (${shown.tiles} tiles to zoom ${shown.deepest}; ${finest.length} of the finest loaded)`);
+  check(shown.hasNormals, `${name}: vertex normals are read`);
+  check(drawn > 0.3 && colours > 50, `${name}: the picture is not blank (${(100 * drawn).toFixed(0)} %, ${colours} colours)`);
+  await compareHeights(page, name, summary);
+  await page.close();
+}
+
+async function compareHeights(page, name, {zooms, resampling}) {
+  const file = join(folder, `${name}_points.json`);
+  if (!existsSync(file)) return;
+  const points = JSON.parse(await readFile(file, 'utf8'));
+  const heights = await page.evaluate(sample, points);
+  const off = points.map(([, , height], n) => Math.abs(heights[n] - height));
+  const {tolerance_m: tolerance} = zooms.at(-1);
+  const worst = Math.max(...off), allowed = tolerance + resampling.max_error_m;
+  const within = off.filter((value) => value <= tolerance).length;
+  check(worst <= allowed && within >= 0.99 * points.length,
+    `${name}: ${points.length} heights sampled by CesiumJS are ${worst.toFixed(2)} m off the DEM's samples at most, ${within} within ${tolerance} m`);
+}
+
+// the functions below run in the page
+
+async function show({name, bounds, hasWater}) {
+  const terrainProvider = await Cesium.CesiumTerrainProvider.fromUrl(`/tiles/${name}`, {
+    requestVertexNormals: true, requestWaterMask: hasWater, requestMetadata: true,
+  });
+  const errors = [];
+  terrainProvider.errorEvent.addEventListener(({message}) => errors.push(message));
+  const baseLayer = new Cesium.ImageryLayer(new Cesium.GridImageryProvider({cells: 4, backgroundColor: Cesium.Color.DARKOLIVEGREEN}));
+  const viewer = makeViewer({terrainProvider, baseLayer});
+  window.viewer = viewer;
+  const {scene, camera} = viewer;
+  const {globe} = scene;
+  globe.preloadAncestors = false;
+  globe.enableLighting = true;
+  const [west, south, east, north] = bounds;
+  const isGlobe = east - west > 180;
+  if (isGlobe) {
+    camera.setView({destination: Cesium.Cartesian3.fromDegrees(170, 20, 2.2e7)});
+  } else {
+    // so near that the finest tiles are wanted
+    const middle = Cesium.Cartographic.fromDegrees((west + east) / 2, (south + north) / 2);
+    const [sampled] = await Cesium.sampleTerrainMostDetailed(terrainProvider, [middle]);
+    const target = Cesium.Cartographic.toCartesian(sampled);
+    const width = Cesium.Rectangle.computeWidth(Cesium.Rectangle.fromDegrees(west, south, east, north)) * 6.4e6;
+    camera.lookAt(target, new Cesium.HeadingPitchRange(0.4, -0.5, 0.35 * width));
+  }
+  let calm = 0;
+  for (let frames = 0; calm < 20 && frames < 3000; ++frames) {
+    await new Promise((resolve) => requestAnimationFrame(resolve));
+    calm = globe.tilesLoaded ? calm + 1 : 0;
+  }
+  const tiles = globe._surface._tilesToRender;
+  return {
+    errors: [...errors, ...window.renderErrors], isLoaded: calm >= 20, tiles: tiles.length,
+    deepest: Math.max(...tiles.map(({level}) => level)), hasNormals: terrainProvider.hasVertexNormals,
+  };
+}
+
+async function sample(points) {
+  const places = points.map(([longitude, latitude]) => Cesium.Cartographic.fromDegrees(longitude, latitude));
+  const sampled = await Cesium.sampleTerrainMostDetailed(window.viewer.terrainProvider, places);
+  return sampled.map(({height}) => height ?? NaN);
+}

@@ -1,0 +1,235 @@
+#include "tiler/geodetic/build_geodetic.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "core/errors.h"
+#include "tiler/geodetic/build_band.h"
+#include "tiler/geodetic/layer_json.h"
+#include "tiler/gzip.h"
+#include "tiler/whole_file.h"
+
+namespace terrane::tiler {
+namespace {
+
+namespace fs = std::filesystem;
+
+// that of CesiumJS for a tile of zoom 0 (a height map of 65 posts): it halves with each zoom
+constexpr double kLevelZeroError_m = 77067.34;
+
+std::string hash_hex(std::string_view text) {
+  std::uint64_t hash = 14695981039346656037U;  // FNV-1a
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
+  return fmt::format("{:016x}", hash);
+}
+
+fs::path summary_of(const fs::path& out) { return out / "terrane.json"; }
+fs::path layer_of(const fs::path& out) { return out / "layer.json"; }
+fs::path work_of(const fs::path& out) { return out / ".work"; }
+
+/// One zoom of what is written.
+struct ZoomSummary {
+  int zoom = 0;
+  double tolerance_m = 0;
+  bool is_held_to_finest = false;  ///< measured against every post of the finest zoom
+  std::int64_t tiles = 0, triangles = 0, bytes = 0;
+  double max_error_m = 0;
+};
+
+class GeodeticBuild {
+ public:
+  GeodeticBuild(const GeodeticHeights& heights, const HeightStatistics& statistics,
+                const GeodeticOptions& options, const fs::path& out, Progress& progress)
+      : heights_(heights),
+        statistics_(statistics),
+        options_(options),
+        out_(out),
+        progress_(progress),
+        key_(geodetic_key(statistics, options)),
+        tiles_(heights.tiles()) {
+    for (int zoom = 0; zoom <= tiles_.zoom; ++zoom) available_.push_back(available(zoom));
+  }
+
+  BuildResult run() {
+    begin();
+    const int top = coarsest_from_finest();
+    add_band({.tiles = tiles_.at(tiles_.zoom - top).refined(tiles_.zoom), .wanted = tiles_}, top);
+    for (int zoom = tiles_.zoom - top - 1; zoom >= 0; --zoom) {
+      const GeodeticTiles tiles = available(zoom);
+      add_band({.tiles = tiles, .wanted = tiles}, 0);
+    }
+    std::ranges::reverse(zooms_);
+    return finish();
+  }
+
+ private:
+  double tolerance_m(int zoom) const {
+    return std::ldexp(options_.tolerance_m, tiles_.zoom - zoom);
+  }
+
+  /// Levels above the finest one that are built from it: up to where four tiles hold the DEM, and
+  /// not the roots, as no polynomial follows both of them round the Earth (TileFrame).
+  int coarsest_from_finest() const {
+    int level = 0;
+    for (; level < tiles_.zoom - 1; ++level) {
+      const GeodeticTiles tiles = tiles_.at(tiles_.zoom - level);
+      if (tiles.columns <= 2 && tiles.rows <= 2) break;
+    }
+    return level;
+  }
+
+  GeodeticTiles available(int zoom) const {
+    const GeodeticTiles tiles = tiles_.at(zoom);
+    // both roots, whether the DEM reaches them or not
+    if (zoom == 0 && tiles.columns < 2) return {.zoom = 0, .x = 0, .y = 0, .columns = 2, .rows = 1};
+    return tiles;
+  }
+
+  /// Builds the levels 0 to \p top of a band.
+  void add_band(BandOptions band, int top) {
+    const int zoom = band.tiles.zoom;
+    const bool is_finest = zoom == tiles_.zoom;
+    for (int level = 0; level <= top; ++level) {
+      const double wished_m = tolerance_m(zoom - level);
+      // a globe must look like one where nothing finer is: a sixteenth of what clients count with
+      const double seen_m = std::max(std::ldexp(kLevelZeroError_m / 16, level - zoom),
+                                     zooms_.empty() ? 0 : zooms_.back().tolerance_m);
+      band.tolerance_m.push_back(is_finest ? wished_m : std::min(wished_m, seen_m));
+    }
+    band.work = work_of(out_) / fmt::format("{}", zoom);
+    band.jobs = options_.jobs > 0
+                    ? options_.jobs
+                    : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const std::vector<TileRecord> records = build_band(
+        heights_, band, [this](const TerrainTile& tile) { return write(tile); }, progress_);
+    std::vector<ZoomSummary> zooms;
+    for (int level = 0; level <= top; ++level) {
+      zooms.push_back({zoom - level, band.tolerance_m[level], is_finest});
+    }
+    for (const TileRecord& record : records) {
+      ZoomSummary& of = zooms[record.tile.level];
+      ++of.tiles;
+      of.triangles += record.triangles;
+      of.bytes += record.bytes;
+      of.max_error_m = std::max(of.max_error_m, record.error.max_m);
+    }
+    zooms_.insert(zooms_.end(), zooms.begin(), zooms.end());
+  }
+
+  std::int64_t write(TerrainTile tile) const {
+    tile.metadata = tile_metadata(tile.tile, available_);
+    if (options_.water) {
+      const TmsBounds b = bounds_of(tile.tile);
+      tile.water = options_.water(b.west_deg, b.south_deg, b.east_deg, b.north_deg);
+    }
+    const std::string bytes = gzip(encode_quantized_mesh(tile));
+    write_whole_file(out_ / (path_of(tile.tile) + ".terrain"), bytes);
+    return static_cast<std::int64_t>(bytes.size());
+  }
+
+  /// Keeps the unfinished work of an earlier run with the same key; else clears the way.
+  void begin() const {
+    std::error_code error;
+    const fs::path key_file = work_of(out_) / "key";
+    if (fs::exists(key_file, error) && read_whole_file(key_file) == key_) return;
+    fs::remove(summary_of(out_), error);
+    fs::remove(layer_of(out_), error);
+    for (int zoom = 0; zoom < 40; ++zoom) fs::remove_all(out_ / fmt::format("{}", zoom), error);
+    fs::remove_all(work_of(out_), error);
+    write_whole_file(key_file, key_);
+  }
+
+  BuildResult finish() const {
+    const TerrainLayer layer{.version = key_,
+                             .attribution = options_.attribution,
+                             .available = available_,
+                             .has_water = options_.water != nullptr};
+    write_whole_file(layer_of(out_), layer_json(layer));
+    write_whole_file(summary_of(out_), summary_json());
+    std::error_code error;
+    fs::remove_all(work_of(out_), error);
+
+    BuildResult result{.levels = static_cast<int>(zooms_.size())};
+    for (const ZoomSummary& zoom : zooms_) {
+      result.tiles += zoom.tiles;
+      result.bytes += zoom.bytes;
+    }
+    result.triangles = zooms_.back().triangles;
+    result.max_error_m = zooms_.back().max_error_m;
+    return result;
+  }
+
+  std::string summary_json() const {
+    nlohmann::ordered_json json;
+    json["format"] = "terrane-geodetic/1";
+    json["generator"] = TERRANE_GENERATOR;
+    json["key"] = key_;
+    json["source"] = options_.source;
+    json["dem"] = {{"samples_with_data", statistics_.samples_with_data},
+                   {"fingerprint", statistics_.fingerprint}};
+    json["resampling"] = {{"max_error_m", options_.resampling_max_error_m},
+                          {"rms_error_m", options_.resampling_rms_error_m}};
+    for (const ZoomSummary& zoom : zooms_) {
+      json["zooms"].push_back({{"zoom", zoom.zoom},
+                               {"tolerance_m", zoom.tolerance_m},
+                               {"held_to", zoom.is_held_to_finest ? "finest posts" : "own posts"},
+                               {"max_error_m", zoom.max_error_m},
+                               {"tiles", zoom.tiles},
+                               {"triangles", zoom.triangles},
+                               {"bytes", zoom.bytes}});
+    }
+    return json.dump(2) + "\n";
+  }
+
+  const GeodeticHeights& heights_;
+  const HeightStatistics& statistics_;
+  const GeodeticOptions& options_;
+  const fs::path& out_;
+  Progress& progress_;
+  std::string key_;
+  GeodeticTiles tiles_;
+  std::vector<GeodeticTiles> available_;  // of each zoom
+  std::vector<ZoomSummary> zooms_;
+};
+
+}  // namespace
+
+std::string geodetic_key(const HeightStatistics& statistics, const GeodeticOptions& options) {
+  return hash_hex(fmt::format("geodetic {} {} {} {} {} {}", TERRANE_GENERATOR, options.tolerance_m,
+                              statistics.fingerprint, options.source, options.attribution,
+                              options.water ? "water" : ""));
+}
+
+bool is_finished(const fs::path& out, const std::string& key) {
+  try {
+    const auto summary = nlohmann::json::parse(read_whole_file(summary_of(out)));
+    if (summary.at("key") != key || !fs::exists(layer_of(out))) return false;
+    for (const auto& zoom : summary.at("zooms")) {
+      std::int64_t bytes = 0;
+      const fs::path folder = out / fmt::format("{}", zoom.at("zoom").get<int>());
+      for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (entry.is_regular_file()) bytes += static_cast<std::int64_t>(entry.file_size());
+      }
+      if (bytes != zoom.at("bytes").get<std::int64_t>()) return false;
+    }
+    return true;
+  } catch (const std::exception&) {
+    return false;  // nothing there, or not whole: the same to whoever asks
+  }
+}
+
+BuildResult build_geodetic(const GeodeticHeights& heights, const HeightStatistics& statistics,
+                           const GeodeticOptions& options, const fs::path& out,
+                           Progress& progress) {
+  if (!(options.tolerance_m > 0) || !std::isfinite(options.tolerance_m)) {
+    throw ConfigError(
+        fmt::format("--tolerance {}: must be a number of metres above 0", options.tolerance_m));
+  }
+  return GeodeticBuild(heights, statistics, options, out, progress).run();
+}
+
+}  // namespace terrane::tiler

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/geodetic_grid.h"
+#include "core/height_statistics.h"
+#include "core/progress.h"
+#include "tiler/build.h"
+
+namespace terrane::tiler {
+
+struct GeodeticOptions {
+  /// Largest vertical distance of the finest zoom to any post of its grid, in metres; doubles with
+  /// each coarser zoom.
+  double tolerance_m = 1;
+  int jobs = 0;  ///< threads; 0: as many as the machine has cores
+  /// What tells this data set from others with the same heights: how they were resampled, filled
+  /// and raised to the ellipsoid.
+  std::string source;
+  double resampling_max_error_m = 0;  ///< of the DEM's samples to the surface between the posts
+  double resampling_rms_error_m = 0;
+  std::string attribution;
+  /// The water mask of a tile, as TerrainTile has it; none without water.
+  std::function<std::string(double west_deg, double south_deg, double east_deg, double north_deg)>
+      water;
+};
+
+/// The key that a finished data set of these options has.
+std::string geodetic_key(const HeightStatistics& statistics, const GeodeticOptions& options);
+
+/// Is the data set of this key here, with all its files?
+bool is_finished(const std::filesystem::path& out, const std::string& key);
+
+/// Builds the tiles of the geodetic quadtree from its roots to the finest zoom and writes them as
+/// quantized-mesh with a layer.json (docs/formats.md).
+///
+/// Guarantees: neighbours of a zoom hold the same border vertices and decode to equal heights
+/// there. From the finest zoom up to that at which four tiles at most hold the whole DEM, each tile
+/// is within tolerance_m * 2^level of every post of the *finest* grid as CesiumJS draws it (flat
+/// triangles between Earth-centred places). The zooms beyond have a grid of their own each.
+///
+/// \pre \p out was claimed (tiler/output_folder.h).
+/// \throws ConfigError, InputError, OutputError.
+BuildResult build_geodetic(const GeodeticHeights& heights, const HeightStatistics& statistics,
+                           const GeodeticOptions& options, const std::filesystem::path& out,
+                           Progress& progress);
+
+}  // namespace terrane::tiler
