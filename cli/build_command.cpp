@@ -36,6 +36,17 @@ void override_with(const std::optional<From>& given, To& setting) {
   if (given) setting = *given;
 }
 
+/// Options that would be of no effect.
+void refuse_native_options(const BuildCommand& command, const BuildSettings& settings) {
+  const char* const useless = command.tile_cells               ? "--tile-cells"
+                              : command.levels_per_octave      ? "--levels-per-octave"
+                              : !settings.drape.images.empty() ? "--texture"
+                                                               : nullptr;
+  if (useless == nullptr) return;
+  throw ConfigError(
+      fmt::format("{}: is for --scheme native alone. Leave it away, or add that", useless));
+}
+
 BuildSettings resolve(const BuildCommand& command) {
   BuildSettings settings;
   if (!command.config.empty()) read_settings(command.config, settings);
@@ -50,10 +61,7 @@ BuildSettings resolve(const BuildCommand& command) {
   apply(command.geodetic, settings.geodetic);
   tiler::check(settings.build);
   check(settings.geodetic);
-  if (settings.geodetic.is_geodetic() && command.tile_cells) {
-    throw ConfigError(
-        "--tile-cells: tiles of --scheme geodetic have 64 cells a side. Leave it away");
-  }
+  if (settings.geodetic.is_geodetic()) refuse_native_options(command, settings);
   if (settings.dem.empty()) {
     throw ConfigError("no DEM given. Name one, or set ingest.dem in the file of --config");
   }

@@ -70,7 +70,9 @@ async function show({name, bounds, hasWater}) {
   const [west, south, east, north] = bounds;
   const isGlobe = east - west > 180;
   if (isGlobe) {
-    camera.setView({destination: Cesium.Cartesian3.fromDegrees(170, 20, 2.2e7)});
+    // the meridian of 180 degrees and the north pole are in sight; the finest tiles are small from there
+    camera.setView({destination: Cesium.Cartesian3.fromDegrees(-150, 40, 1.8e7)});
+    globe.maximumScreenSpaceError = 0.2;
   } else {
     // so near that the finest tiles are wanted
     const middle = Cesium.Cartographic.fromDegrees((west + east) / 2, (south + north) / 2);
