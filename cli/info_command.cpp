@@ -61,7 +61,9 @@ std::string crs_name_of(const nlohmann::json& dem) {
   const auto wkt = dem.at("crs_wkt").get<std::string>();
   const std::size_t begin = wkt.find('"');
   const std::size_t end = wkt.find('"', begin + 1);
-  return end == std::string::npos ? "" : wkt.substr(begin + 1, end - begin - 1);
+  if (end == std::string::npos) return {};
+  const std::string name = wkt.substr(begin + 1, end - begin - 1);
+  return name == "unnamed" || name == "unknown" ? "" : name;
 }
 
 void describe_each_level(const nlohmann::json& levels) {

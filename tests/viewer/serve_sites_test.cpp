@@ -91,6 +91,7 @@ TEST(ServeSeveral, ListsThemAndServesEachBelowItsName) {
       {.data = {folder.path() / "lake", folder.path() / "b/<peak> 1", folder.path() / "c/lake/"}});
   const std::string page = request_raw(server.port(), "GET", "/").body;
   EXPECT_THAT(page, HasSubstr("href=\"/lake/\""));
+  EXPECT_THAT(page, HasSubstr("<b>lake-2</b>"));
   EXPECT_THAT(page, HasSubstr("&lt;peak&gt; 1"));
   EXPECT_THAT(page, HasSubstr("href=\"/%3Cpeak%3E%201/tileset.json\""));
   EXPECT_THAT(page, Not(HasSubstr("<peak>")));

@@ -91,7 +91,7 @@ std::string link(const std::string& url, std::string_view label) {
 }
 
 std::string describe(const IndexEntry& entry) {
-  std::string item = fmt::format("<li><b>{}</b><br>\n", escaped(entry.data->name()));
+  std::string item = fmt::format("<li><b>{}</b><br>\n", escaped(entry.name));
   if (const std::string summary = summary_of(*entry.data); !summary.empty()) {
     item += fmt::format("<small>{}</small><br>\n", escaped(summary));
   }

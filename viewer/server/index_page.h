@@ -9,6 +9,7 @@ namespace terrane::viewer {
 
 /// A data set and where it is served: "/NAME/", encoded.
 struct IndexEntry {
+  std::string name;  ///< "NAME"
   std::string url;
   const DataSet* data;
 };

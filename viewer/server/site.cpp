@@ -55,7 +55,8 @@ std::vector<std::string> Site::paths() const {
 std::optional<DataSetFile> Site::index_page() const {
   std::vector<IndexEntry> entries;
   for (const Mount& mount : mounts_) {
-    entries.push_back({encode_url_path(mount.prefix) + "/", mount.data.get()});
+    const std::string name = mount.prefix.empty() ? mount.data->name() : mount.prefix.substr(1);
+    entries.push_back({name, encode_url_path(mount.prefix) + "/", mount.data.get()});
   }
   std::string page = make_index_page(entries);
   std::string tag = fmt::format("index-{:x}", std::hash<std::string>()(page));
