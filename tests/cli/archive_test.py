@@ -12,6 +12,7 @@ import tempfile
 import unittest
 import zipfile
 
+from export_test import read_ply
 from program import TERRANE, bytes_below, terrane
 
 DEM = "synthetic:caldera?size=193&seed=1"
@@ -148,6 +149,56 @@ class Archives(unittest.TestCase):
             self.assertEqual(server.wait(timeout=20), 0)
             server.stdout.close()
             server.stderr.close()
+
+
+class EveryTiling(unittest.TestCase):
+    """However the tiles are written and listed, an archive holds them, and they are the same mesh."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        cls.plain = cls.mesh_of(cls.build("plain"))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    @classmethod
+    def build(cls, name, *options):
+        status, _, said = terrane("--quiet", "build", DEM, "-o", cls.folder / name, *options)
+        assert status == 0, said
+        return cls.folder / name
+
+    @classmethod
+    def mesh_of(cls, out):
+        status, _, said = terrane("--quiet", "export", out, "-o", cls.folder / "mesh.ply")
+        assert status == 0, said
+        points, triangles = read_ply(cls.folder / "mesh.ply")
+        # tiles may list their triangles in another order, and begin at another corner
+        return sorted(min((points[a], points[b], points[c]), (points[b], points[c], points[a]),
+                          (points[c], points[a], points[b])) for a, b, c in triangles)
+
+    def check(self, name, *options):
+        out = self.build(name, *options)
+        for extension in ("pmtiles", "3tz"):
+            archive = self.folder / f"{name}.{extension}"
+            self.assertEqual(terrane("--quiet", "pack", out, "-o", archive)[0], 0)
+            unpacked = self.folder / f"{name} {extension}"
+            terrane("--quiet", "unpack", archive, "-o", unpacked)
+            self.assertEqual(tiles_below(unpacked), tiles_below(out))
+            status, printed, said = terrane("--quiet", "verify", archive)
+            self.assertEqual(status, 0, printed + said)
+            self.assertTrue(self.mesh_of(archive) == self.plain)
+
+    def test_implicit(self):
+        self.check("implicit", "--implicit")
+
+    def test_split_into_external_tilesets(self):
+        self.check("split", "--tileset-tiles", 3)
+
+    def test_uncompressed_with_skirts(self):
+        self.check("skirts", "--skirts", "auto", "--compression", "none")
 
 
 if __name__ == "__main__":
