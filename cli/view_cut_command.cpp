@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.h"
 #include "core/errors.h"
@@ -192,8 +193,8 @@ void add_view_cut_command(CLI::App& app, const CommonOptions&) {
   cut->add_option("tree", command->tree, "Tree that merge-tree wrote")->required();
   cut->add_option("-o,--out", command->out, "Mesh to write: .ply, .obj or .glb")->required();
   cut->add_option("--camera", command->eye,
-                  "Where the camera is: x,y,z in the frame of the mesh; without, to the south and "
-                  "above")
+                  "Where the camera is: x,y,z in the frame of the mesh (of a DEM: metres from its "
+                  "first sample, x along a row, y up the columns); without, south and above")
       ->delimiter(',')
       ->expected(3);
   cut->add_option("--target", command->target, "What it looks at: x,y,z; without, the middle")
