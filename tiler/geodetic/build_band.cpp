@@ -158,9 +158,7 @@ class BandBuild {
     return {.tile = tile,
             .triangles = static_cast<std::int64_t>(mesh.triangles.size()),
             .bytes = write_(terrain),
-            .error = mesh.error,
-            .low = Eigen::Vector3d::Zero(),
-            .high = Eigen::Vector3d::Zero()};
+            .error = mesh.error};
   }
 
   const BandOptions& options_;
