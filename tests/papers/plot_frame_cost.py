@@ -39,12 +39,15 @@ def svg(lines):
     out.append(f'<text x="{(x0 + x1) / 2}" y="{HEIGHT - 6}" text-anchor="middle">splits and merges in a frame</text>')
     out.append(f'<text x="14" y="{(y0 + y1) / 2}" transform="rotate(-90 14 {(y0 + y1) / 2})" '
                'text-anchor="middle">milliseconds</text>')
-    for colour, (triangles, line) in zip(COLOURS, lines.items()):
+    labels = []  # heights of those that are there
+    for colour, (triangles, line) in zip(COLOURS, sorted(lines.items(), reverse=True)):
         places = [place(x, y) for x, y in line]
         out.append(f'<polyline points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in places)}" '
                    f'fill="none" stroke="{colour}" stroke-width="2"/>')
         out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{colour}"/>' for x, y in places]
         x, y = places[-1]
+        y = max([y] + [label + 14 for label in labels if label + 14 > y])
+        labels.append(y)
         out.append(f'<text x="{x + 8:.1f}" y="{y + 4:.1f}" fill="{colour}">{triangles:,} triangles</text>')
     return "\n".join(out) + "\n</svg>\n"
 
