@@ -1,10 +1,12 @@
 """Meshes for the figures of Xia and Varshney 1996, as OFF text. Plain Python.
 
 sphere(): the paper's, 8,192 triangles. scan(): stands in for a scanned model of about 70,000
-triangles: a body with two lobes, a rough coat and a few sharp grooves.
+triangles: a body with two lobes, a rough coat and a few sharp grooves. molecule(): stands in for the
+molecular surface of about 110,000 triangles.
 """
 
 import math
+import random
 
 
 def off(points, triangles):
@@ -67,4 +69,73 @@ def scan(frequency=59):
              (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
     points, triangles = ball(corners, faces, frequency)
     points = [tuple(radius(*p) * e for e in p) for p in points]
+    return off(points, triangles)
+
+
+def atoms(count=60):
+    """A chain that turns at random and stays together."""
+    chance, places, at = random.Random(4), [], (0.0, 0.0, 0.0)
+    for _ in range(count):
+        step = unit([chance.gauss(0, 1) - 0.5 * e for e in at])
+        at = tuple(a + 0.42 * e for a, e in zip(at, step))
+        places.append((at, chance.uniform(0.3, 0.42)))
+    return places
+
+
+def field(places, cell):
+    """Sum of a bell about each atom, less 1, at the points of a grid near them."""
+    values = {}
+    for centre, size in places:
+        reach = math.ceil(2.2 * size / cell)
+        middle = [round(e / cell) for e in centre]
+        for i in range(middle[0] - reach, middle[0] + reach + 1):
+            for j in range(middle[1] - reach, middle[1] + reach + 1):
+                for k in range(middle[2] - reach, middle[2] + reach + 1):
+                    squared = sum((cell * a - b) ** 2 for a, b in zip((i, j, k), centre))
+                    bell = math.exp(2 * (1 - squared / size ** 2))
+                    values[i, j, k] = values.get((i, j, k), -1.0) + bell
+    return values
+
+
+def molecule(cell=0.0385):
+    """The surface on which the field is 0, by marching tetrahedra: six in a cube."""
+    values = field(atoms(), cell)
+    steps = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
+    orders = [(0, 1, 2), (0, 2, 1), (1, 0, 2), (1, 2, 0), (2, 0, 1), (2, 1, 0)]
+    points, number, triangles = [], {}, []
+
+    def crossing(a, b):
+        key = (a, b) if a < b else (b, a)
+        if key not in number:
+            (va, vb) = (values.get(p, -1.0) for p in key)
+            # not at a point of the grid: triangles would have no area
+            t = min(max(va / (va - vb), 0.1), 0.9)
+            number[key] = len(points)
+            points.append(tuple(cell * (p + t * (q - p)) for p, q in zip(*key)))
+        return number[key]
+
+    def towards(triangle, inside, outside):
+        a, b, c = (points[v] for v in triangle)
+        u, v = [q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)]
+        n = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+        out = sum(e * (q - p) for e, p, q in zip(n, inside, outside))
+        triangles.append(triangle if out > 0 else triangle[::-1])
+
+    cubes = {tuple(a - b for a, b in zip(p, corner)) for p, value in values.items() if value > 0
+             for corner in [(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]}
+    for cube in sorted(cubes):
+        for order in orders:
+            tetra = [cube]
+            for axis in order:
+                tetra.append(tuple(a + b for a, b in zip(tetra[-1], steps[axis])))
+            inside = [p for p in tetra if values.get(p, -1.0) > 0]
+            outside = [p for p in tetra if values.get(p, -1.0) <= 0]
+            if len(inside) == 1 or len(outside) == 1:
+                apex, others = (inside[0], outside) if len(inside) == 1 else (outside[0], inside)
+                towards([crossing(apex, p) for p in others], inside[0], outside[0])
+            elif len(inside) == 2:
+                (a, b), (c, d) = inside, outside
+                quad = [crossing(a, c), crossing(a, d), crossing(b, d), crossing(b, c)]
+                towards(quad[:3], a, c)
+                towards([quad[0], quad[2], quad[3]], a, c)
     return off(points, triangles)
