@@ -81,7 +81,7 @@ def main():
                    check=True)
     with served(options.terrane, tiles) as url:
         checks = [["view.mjs", "--screenshot", options.work / "screenshot.png", "--steps", "12"],
-                  ["flight.mjs", "--cameras", "6", "--flight", "20", "--steps", "8"]]
+                  ["flight.mjs", "--cameras", "6", "--flight", "20", "--steps", "5"]]
         if options.terrain == "caldera":
             checks.append(["looks.mjs", "--images", IMAGES])
         codes = [subprocess.run(["node", BROWSER / script, "--url", url, *rest]).returncode
