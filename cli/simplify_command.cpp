@@ -82,6 +82,10 @@ void add_simplify_command(CLI::App& app, const CommonOptions& common) {
       ->add_option("--tolerance", command->options.tolerance_m,
                    "Largest vertical distance to any sample, in metres above 0")
       ->capture_default_str();
+  simplify
+      ->add_option("--effort", command->options.effort,
+                   "0 to 3: more time for fewer triangles within the same tolerance")
+      ->capture_default_str();
   simplify->add_option("--report", command->report,
                        "File to write counts and measured errors to, as JSON");
   simplify->callback([command, &common] { run(*command, common); });

@@ -121,6 +121,10 @@ void check(const SimplifyOptions& options) {
     throw ConfigError(
         fmt::format("--tolerance {}: must be a number of metres above 0", options.tolerance_m));
   }
+  if (options.effort < 0 || options.effort > hierarchy::kTopEffort) {
+    throw ConfigError(
+        fmt::format("--effort {}: must be from 0 to {}", options.effort, hierarchy::kTopEffort));
+  }
 }
 
 SimplifiedTerrain simplify(const HeightSource& heights, const SimplifyOptions& options,
@@ -141,7 +145,8 @@ SimplifiedTerrain simplify(const HeightSource& heights, const SimplifyOptions& o
   const double wanted_m = std::max(options.tolerance_m - kRounding_m, options.tolerance_m / 2);
   SimplifiedTerrain result;
   result.input_triangles = std::ssize(full.triangles);
-  const hierarchy::StrictOptions strict{.tolerance_m = wanted_m, .lines = line_tolerance(options)};
+  const hierarchy::StrictOptions strict{
+      .tolerance_m = wanted_m, .effort = options.effort, .lines = line_tolerance(options)};
   result.mesh = hierarchy::collapse_strictly(full, field_of(grid), placer, {}, strict).mesh;
   result.error = measure_over_grid(result.mesh, grid);
   judge(result.error, sample_count(full), options);

@@ -11,6 +11,8 @@ namespace terrane::tiler {
 struct SimplifyOptions {
   /// Largest vertical distance to any sample, in metres; above 0.
   double tolerance_m = 1;
+  /// 0 to 3: more rounds of polish make fewer triangles; see hierarchy/collapse/strict_collapse.h.
+  int effort = 1;
   /// Heights are written as whole multiples of 1 / height_steps_per_m metres.
   double height_steps_per_m = 1e6;
   /// Lines that stay edges of the mesh, within tolerance_m of their place in plan.

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "hierarchy/collapse/boundary_rule.h"
+#include "hierarchy/collapse/edge_flip.h"
 #include "hierarchy/collapse/morph_guard.h"
 #include "hierarchy/collapse/star_fit.h"
 
@@ -17,6 +18,12 @@ constexpr float kIntervalMargin = 0.2F;
 
 // triangles in a row: with their samples they fit a second-level cache
 constexpr std::uint32_t kBlock = 8192;
+
+// by effort
+constexpr int kPolishRounds[] = {0, 0, 3, 40};
+
+// how far vertices try to go to each neighbour, round by round: 1/4, 1/2, 1/8 of the way
+constexpr std::int32_t kPartsOfWay[] = {4, 2, 8};
 
 // a sweep that collapses less than one in this many triangles is the last
 constexpr std::int64_t kTooFew = 500;
@@ -68,8 +75,8 @@ class StrictCollapse {
     tolerance_m_ = kTriangleShare * options_.tolerance_m;
     sweep([this](std::uint32_t triangle) { return sweep_triangle(TriangleId{triangle}); });
     tolerance_m_ = options_.tolerance_m;
-    std::ranges::fill(tested_, 0);
-    sweep([this](std::uint32_t triangle) { return sweep_edges(TriangleId{triangle}); });
+    if (options_.effort > 0 || guard_) collapse_edges();
+    if (!guard_) polish(kPolishRounds[options_.effort]);
     return finish(given_vertices);
   }
 
@@ -81,6 +88,64 @@ class StrictCollapse {
       all.push_back(given[mesh.origin(VertexId{v})]);
     }
     return all;
+  }
+
+  std::int64_t collapse_edges() {
+    std::ranges::fill(tested_, 0);
+    const std::int64_t before = result_.edge_collapses;
+    sweep([this](std::uint32_t triangle) { return sweep_edges(TriangleId{triangle}); });
+    return result_.edge_collapses - before;
+  }
+
+  /// Makes room under the tolerance and collapses what it then allows, again and again.
+  void polish(int rounds) {
+    int idle_rounds = 0;
+    for (int round = 0; round < rounds && idle_rounds < std::ssize(kPartsOfWay); ++round) {
+      for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) flip_edges(TriangleId{t});
+      for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v) {
+        move(VertexId{v}, kPartsOfWay[round % std::ssize(kPartsOfWay)]);
+      }
+      for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) flip_edges(TriangleId{t});
+      idle_rounds = collapse_edges() == 0 ? idle_rounds + 1 : 0;
+    }
+  }
+
+  void flip_edges(TriangleId t) {
+    if (!mesh_.is_live(t) || mesh_.is_ghost(t)) return;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const HalfedgeId h = HalfedgeMesh::halfedge(t, k);
+      const TriangleId across = HalfedgeMesh::triangle(mesh_.opposite(h));
+      if (across < t || !flip_.is_better(h, mesh_, vertices_, samples_, tolerance_m_,
+                                         options_.smallest_altitude_cells)) {
+        continue;
+      }
+      mesh_.flip(h);
+      const TriangleId pair[] = {t, across};
+      samples_.share_out(pair, flip_.samples(), flip_.sector());
+      ++result_.flips;
+    }
+  }
+
+  /// Moves a vertex towards a neighbour if it is nearer to the samples there.
+  void move(VertexId v, std::int32_t parts_of_way) {
+    if (mesh_.outgoing(v) == kNoHalfedge || vertices_[index(v)].kind != VertexKind::kInterior)
+      return;
+    walker_.around_vertex(v, stencil_);
+    star_.gather(stencil_, mesh_, vertices_, samples_);
+    const Place here = vertices_[index(v)].place;
+    candidates_.clear();
+    candidates_.push_back({here.plan, here.height_m});
+    for (const VertexId to : stencil_.polygon) {
+      const GridPoint there = vertices_[index(to)].place.plan;
+      candidates_.push_back({{here.plan.x + (there.x - here.plan.x) / parts_of_way,
+                              here.plan.y + (there.y - here.plan.y) / parts_of_way},
+                             here.height_m});
+    }
+    const std::optional<Place> place = best_candidate();
+    if (!place || place->lattice == here.lattice) return;
+    samples_.share_out(star_.triangles(), star_.samples(), judge_.sectors(star_));
+    vertices_[index(v)].place = *place;
+    ++result_.moves;
   }
 
   /// Visits all triangles, block by block so that a block stays in the cache, until it is not worth
@@ -190,6 +255,11 @@ class StrictCollapse {
     if (boundary.onto) return onto_line(vertices_[index(*boundary.onto)].place);
 
     list_candidates();
+    return best_candidate();
+  }
+
+  /// The place of the candidate with the least squared error among those that may be written.
+  std::optional<Place> best_candidate() {
     for (Candidate& candidate : candidates_) {
       candidate.is_rejected = !fit(candidate.plan, candidate.heights);
     }
@@ -340,6 +410,7 @@ class StrictCollapse {
   std::vector<std::uint32_t> block_;
   Stencil stencil_;
   std::vector<Candidate> candidates_;
+  EdgeFlip flip_;
   Star star_;
   StarJudge judge_;
   Collapsibility refusal_ = Collapsibility::kYes;

@@ -13,11 +13,18 @@
 
 namespace terrane::hierarchy {
 
+/// How much time goes into a mesh of level 0; see StrictOptions::effort.
+inline constexpr int kDefaultEffort = 1, kTopEffort = 3;
+
 struct StrictOptions {
   /// Largest vertical distance to any sample, in metres.
   double tolerance_m = 1;
   /// Smallest altitude in plan of a new triangle, in cells: rounding must not turn it over.
   double smallest_altitude_cells = 0;
+  /// 0 to 3. Above 1, and only without a finer level: edges are flipped and vertices moved to where
+  /// the squared error is least, and collapses tried again, in more and more rounds. 0: triangles
+  /// alone collapse.
+  int effort = kDefaultEffort;
   /// How far the mesh's feature lines may move in plan.
   LineTolerance lines;
 };
@@ -30,10 +37,13 @@ struct StrictResult {
   std::vector<std::uint32_t> target;
   std::int64_t triangle_collapses = 0;
   std::int64_t edge_collapses = 0;
+  std::int64_t flips = 0;
+  std::int64_t moves = 0;
   std::array<std::int64_t, kCollapsibilityCount> refusals{};  ///< by Collapsibility
 };
 
-/// Collapses triangles, then edges, as long as the mesh stays within the tolerance of every sample.
+/// Collapses triangles, then edges, and polishes if asked to, as long as the mesh stays within the
+/// tolerance of every sample.
 ///
 /// Sweeps run in memory order over stencils that do not meet. A collapse is accepted when the star
 /// that replaces the stencil, at its written (rounded) places, is within the tolerance of every

@@ -215,6 +215,29 @@ void HalfedgeMesh::collapse(std::span<const HalfedgeId> spokes, std::span<const 
   valence_[kept] = valence - (is_triangle ? 9 : 4);
 }
 
+void HalfedgeMesh::flip(HalfedgeId h) {
+  const HalfedgeId o = opposite(h);
+  const VertexId a = start(h), b = start(o), c = apex(h), d = apex(o);
+  const HalfedgeId beyond_bc = opposite(next(h)), beyond_ca = opposite(prev(h));
+  const HalfedgeId beyond_ad = opposite(next(o)), beyond_db = opposite(prev(o));
+  const auto join = [this](HalfedgeId inside, VertexId from, HalfedgeId beyond) {
+    start_[inside] = from;
+    opposite_[inside] = beyond;
+    opposite_[beyond] = inside;
+    outgoing_[from] = inside;
+  };
+  start_[h] = d;
+  start_[o] = c;
+  join(next(h), c, beyond_ca);
+  join(prev(h), a, beyond_ad);
+  join(next(o), d, beyond_db);
+  join(prev(o), b, beyond_bc);
+  --valence_[a];
+  --valence_[b];
+  ++valence_[c];
+  ++valence_[d];
+}
+
 std::vector<Corners> HalfedgeMesh::triangles() const {
   std::vector<Corners> result;
   result.reserve(live_triangles_);

@@ -81,6 +81,11 @@ class HalfedgeMesh {
   void collapse(std::span<const HalfedgeId> spokes, std::span<const HalfedgeId> dying,
                 VertexId kept);
 
+  /// Replaces an edge by the other diagonal of its two triangles, which runs from apex(opposite(h))
+  /// to apex(h) and keeps the id h.
+  /// \pre neither triangle is a ghost, and the two apexes are not joined already.
+  void flip(HalfedgeId h);
+
   /// Live triangles without ghosts, in memory order.
   std::vector<Corners> triangles() const;
 

@@ -61,6 +61,20 @@ Collapsibility StencilWalker::around_edge(HalfedgeId edge, Stencil& stencil) {
                                                            : Collapsibility::kCyclic;
 }
 
+void StencilWalker::around_vertex(VertexId vertex, Stencil& stencil) const {
+  stencil.polygon.clear();
+  stencil.spokes.clear();
+  stencil.core_size = 1;
+  stencil.core = {vertex, VertexId{}, VertexId{}};
+  const HalfedgeId first = mesh_.outgoing(vertex);
+  HalfedgeId spoke = first;
+  do {
+    stencil.spokes.push_back(spoke);
+    stencil.polygon.push_back(mesh_.end(spoke));
+    spoke = mesh_.rotate(spoke);
+  } while (spoke != first);
+}
+
 /// Counter-clockwise about start(from_dying), from the dying triangle to the dying triangle `to`.
 void StencilWalker::walk(HalfedgeId from_dying, TriangleId to, Stencil& stencil) const {
   HalfedgeId spoke = mesh_.rotate(from_dying);

@@ -29,9 +29,12 @@ struct Stencil {
   std::vector<HalfedgeId> spokes;     ///< from the core into the triangles that stay
   std::array<HalfedgeId, 3> dying{};  ///< see HalfedgeMesh::collapse
   std::array<VertexId, 3> core{};
-  std::uint32_t core_size = 0;  ///< 2: an edge, 3: a triangle
+  std::uint32_t core_size = 0;  ///< 1: a vertex, 2: an edge, 3: a triangle
 
-  std::span<const HalfedgeId> dying_span() const { return {dying.data(), core_size}; }
+  /// Nothing dies about a vertex.
+  std::span<const HalfedgeId> dying_span() const {
+    return {dying.data(), core_size > 1 ? core_size : 0};
+  }
   std::span<const VertexId> core_span() const { return {core.data(), core_size}; }
 };
 
@@ -53,6 +56,10 @@ class StencilWalker {
   /// The same for an edge, as the special case of a triangle with two corners in one.
   /// \pre neither end of the edge is a ghost.
   Collapsibility around_edge(HalfedgeId edge, Stencil& stencil);
+
+  /// The triangles of a vertex: a stencil for moving it.
+  /// \pre the vertex is live and not on the boundary.
+  void around_vertex(VertexId vertex, Stencil& stencil) const;
 
  private:
   void walk(HalfedgeId from_dying, TriangleId to, Stencil& stencil) const;

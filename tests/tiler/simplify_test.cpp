@@ -13,9 +13,9 @@ namespace {
 using testing::FunctionDem;
 using ::testing::HasSubstr;
 
-SimplifiedTerrain simplified(const HeightSource& dem, double tolerance_m) {
+SimplifiedTerrain simplified(const HeightSource& dem, double tolerance_m, int effort = 1) {
   NoProgress progress;
-  return simplify(dem, {.tolerance_m = tolerance_m}, progress);
+  return simplify(dem, {.tolerance_m = tolerance_m, .effort = effort}, progress);
 }
 
 TEST(Simplify, APlaneOverARectangleNeedsFewTrianglesAndLosesNothing) {
@@ -41,6 +41,27 @@ TEST(Simplify, StaysWithinEveryToleranceOnRoughTerrainWithHoles) {
     EXPECT_LT(terrain.mesh.triangles.size(), triangles);
     triangles = terrain.mesh.triangles.size();
   }
+}
+
+TEST(Simplify, EveryStepOfEffortSavesTrianglesWithinTheSameTolerance) {
+  const FunctionDem dem({90, 70}, [](auto c, auto r) {
+    if (c > 20 && c < 26 && r > 30 && r < 34 + c % 3) return double{NAN};
+    return 30 * std::sin(0.3 * c) * std::cos(0.2 * r) + (c * 7 + r * 13) % 3;
+  });
+  std::size_t triangles = 90 * 70 * 2;
+  for (const int effort : {0, 1, 2, 3}) {
+    const SimplifiedTerrain terrain = simplified(dem, 3, effort);
+    EXPECT_LE(terrain.error.max_m, 3);
+    EXPECT_EQ(terrain.error.uncovered, 0);
+    EXPECT_EQ(terrain.error.folded, 0);
+    EXPECT_LT(terrain.mesh.triangles.size(), triangles) << "effort " << effort;
+    triangles = terrain.mesh.triangles.size();
+  }
+}
+
+TEST(Simplify, RefusesAnEffortThatIsNone) {
+  EXPECT_THROW(check(SimplifyOptions{.effort = 4}), ConfigError);
+  EXPECT_THROW(check(SimplifyOptions{.effort = -1}), ConfigError);
 }
 
 TEST(Simplify, SamplesThatNoTriangleTouchesAreNoPartOfTheTerrain) {

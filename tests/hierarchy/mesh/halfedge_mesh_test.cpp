@@ -159,6 +159,29 @@ TEST_P(RandomCollapses, KeepTheMeshManifoldAndItsEulerCharacteristic) {
   EXPECT_GT(collapses, 3);
 }
 
+TEST(HalfedgeMesh, FlipReplacesADiagonalAndFlippingBackRestoresIt) {
+  // the square 0 1 2 3 in the middle of a larger one, so that every corner may lose an edge
+  const std::vector<Corners> square{{0, 1, 2}, {0, 2, 3}, {4, 1, 0},
+                                    {5, 2, 1}, {6, 3, 2}, {7, 0, 3}};
+  HalfedgeMesh mesh(8, square);
+  const HalfedgeId diagonal = HalfedgeMesh::halfedge(TriangleId{0}, 2);  // from 2 to 0
+  mesh.flip(diagonal);
+  const Oracle flipped(mesh.triangles());
+  EXPECT_TRUE(flipped.is_manifold);
+  EXPECT_EQ(flipped.euler, 1);
+  EXPECT_EQ(std::minmax(mesh.start(diagonal), mesh.end(diagonal)),
+            std::minmax(VertexId{1}, VertexId{3}));
+  for (std::uint32_t v = 0; v < 8; ++v) {
+    EXPECT_EQ(mesh.start(mesh.outgoing(VertexId{v})), VertexId{v});
+  }
+  const std::uint32_t edges_of_2 = mesh.valence(VertexId{2});
+  mesh.flip(diagonal);
+  EXPECT_EQ(mesh.valence(VertexId{2}), edges_of_2 + 1);
+  EXPECT_EQ(std::minmax(mesh.start(diagonal), mesh.end(diagonal)),
+            std::minmax(VertexId{0}, VertexId{2}));
+  EXPECT_TRUE(Oracle(mesh.triangles()).is_manifold);
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomCollapses, ::testing::Range(0U, 200U));
 
 }  // namespace

@@ -1,0 +1,92 @@
+#include "hierarchy/collapse/edge_flip.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace terrane::hierarchy {
+namespace {
+
+// a flip has to save this share of the squared error: equal ones would go back and forth
+constexpr double kLeastGain = 1e-3;
+
+double squared_length(GridPoint a, GridPoint b) {
+  const double x = static_cast<double>(b.x) - a.x, y = static_cast<double>(b.y) - a.y;
+  return x * x + y * y;
+}
+
+bool is_upright(GridPoint a, GridPoint b, GridPoint c, double smallest_altitude_cells) {
+  const auto area = static_cast<double>(orient2d(a, b, c));
+  const double altitude = smallest_altitude_cells * kUnitsPerCell;
+  const double longest2 =
+      std::max({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
+  return area > 0 && area * area >= longest2 * altitude * altitude;
+}
+
+/// The plane of a triangle over the grid.
+class Plane {
+ public:
+  Plane(const Place& a, const Place& b, const Place& c)
+      : column_(column_of(a.plan)), row_(row_of(a.plan)), height_m_(a.height_m) {
+    const double bx = column_of(b.plan) - column_, by = row_of(b.plan) - row_;
+    const double cx = column_of(c.plan) - column_, cy = row_of(c.plan) - row_;
+    const double bz = b.height_m - height_m_, cz = c.height_m - height_m_;
+    const double scale = 1 / (bx * cy - by * cx);
+    per_column_ = (bz * cy - by * cz) * scale;
+    per_row_ = (bx * cz - bz * cx) * scale;
+  }
+  double error_m(const CoveredSample& sample) const {
+    return height_m_ + (sample.column - column_) * per_column_ + (sample.row - row_) * per_row_ -
+           sample.height_m;
+  }
+
+ private:
+  double column_, row_, height_m_, per_column_, per_row_;
+};
+
+}  // namespace
+
+bool EdgeFlip::is_better(HalfedgeId h, const HalfedgeMesh& mesh,
+                         std::span<const TerrainVertex> vertices, const CoveredSamples& samples,
+                         double tolerance_m, double smallest_altitude_cells) {
+  const HalfedgeId o = mesh.opposite(h);
+  const TriangleId t0 = HalfedgeMesh::triangle(h), t1 = HalfedgeMesh::triangle(o);
+  if (mesh.is_ghost(t0) || mesh.is_ghost(t1)) return false;
+  const VertexId va = mesh.start(h), vb = mesh.start(o);
+  if (mesh.valence(va) <= 4 || mesh.valence(vb) <= 4) return false;
+  const VertexId vc = mesh.apex(h), vd = mesh.apex(o);
+  const auto is_inside = [&](VertexId v) {
+    return vertices[index(v)].kind == VertexKind::kInterior;
+  };
+  if (!(is_inside(va) || is_inside(vb)) || !(is_inside(vc) || is_inside(vd))) return false;
+  const Place &a = vertices[index(va)].place, &b = vertices[index(vb)].place;
+  const Place &c = vertices[index(vc)].place, &d = vertices[index(vd)].place;
+  if (!is_upright(a.plan, d.plan, c.plan, smallest_altitude_cells) ||
+      !is_upright(b.plan, c.plan, d.plan, smallest_altitude_cells)) {
+    return false;
+  }
+
+  const Plane before[] = {{a, b, c}, {b, a, d}}, after[] = {{a, d, c}, {b, c, d}};
+  const double dx = static_cast<double>(c.plan.x) - d.plan.x;
+  const double dy = static_cast<double>(c.plan.y) - d.plan.y;
+  double old_square = 0, new_square = 0;
+  samples_.clear();
+  sector_.clear();
+  for (std::size_t t = 0; t < 2; ++t) {
+    for (const std::uint32_t s : samples.under(t == 0 ? t0 : t1)) {
+      const CoveredSample& sample = samples[s];
+      const double x = double{sample.column} * kUnitsPerCell - d.plan.x;
+      const double y = -double{sample.row} * kUnitsPerCell - d.plan.y;
+      const std::uint32_t sector = dx * y - dy * x >= 0 ? 0 : 1;
+      const double error_m = after[sector].error_m(sample);
+      if (!(std::abs(error_m) <= tolerance_m)) return false;
+      const double old_m = before[t].error_m(sample);
+      old_square += old_m * old_m;
+      new_square += error_m * error_m;
+      samples_.push_back(s);
+      sector_.push_back(sector);
+    }
+  }
+  return new_square < (1 - kLeastGain) * old_square;
+}
+
+}  // namespace terrane::hierarchy

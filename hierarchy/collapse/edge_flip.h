@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "hierarchy/collapse/covered_samples.h"
+#include "hierarchy/collapse/terrain_mesh.h"
+#include "hierarchy/mesh/halfedge_mesh.h"
+
+namespace terrane::hierarchy {
+
+/// Judges whether the other diagonal of the two triangles at an edge is nearer to the samples.
+///
+///         c                c
+///        ╱ ╲              ╱│╲        h runs from a to b; afterwards triangle(h) is (a, d, c), the
+///       a───b     ──▶    a │ b       one across (b, c, d)
+///        ╲ ╱              ╲│╱
+///         d                d
+///
+/// Keeps its scratch space from call to call.
+class EdgeFlip {
+ public:
+  /// True if the flipped pair is upright in plan, no thinner than \p smallest_altitude_cells,
+  /// within \p tolerance_m of every sample under it, and its sum of squared errors is smaller.
+  ///
+  /// An edge with both ends on a line, a seam or the outline stays, and none is made.
+  bool is_better(HalfedgeId h, const HalfedgeMesh& mesh, std::span<const TerrainVertex> vertices,
+                 const CoveredSamples& samples, double tolerance_m, double smallest_altitude_cells);
+
+  /// The samples under the pair that was last better.
+  std::span<const std::uint32_t> samples() const { return samples_; }
+  /// For each of them: 0 if it comes to lie in triangle(h), 1 across.
+  std::span<const std::uint32_t> sector() const { return sector_; }
+
+ private:
+  std::vector<std::uint32_t> samples_, sector_;
+};
+
+}  // namespace terrane::hierarchy
