@@ -54,7 +54,7 @@ TEST_F(GridLatticeTest, StandsInTheWorldWhereLongitudeLatitudeAndHeightAre) {
   EXPECT_NEAR(at.z(), 1000, lattice_.step_m(0).z());
 }
 
-TEST_F(GridLatticeTest, RefusesATolerancThatItsStepsOfHeightCannotHold) {
+TEST_F(GridLatticeTest, RefusesAToleranceThatItsStepsOfHeightCannotHold) {
   EXPECT_THROW(GridLattice(kBand, world_, -11000, 9000, {0.1}), ConfigError);
 }
 
