@@ -98,4 +98,6 @@ async function start(): Promise<void> {
   if (path) await session.play(parsePath(await (await fetch(path)).json()));
 }
 
-start().catch((error: unknown) => showError(error instanceof Error ? error.message : String(error)));
+start().catch((error: unknown) =>
+  showError(error instanceof Error ? error.message : String(error)),
+);

@@ -95,7 +95,8 @@ function mix(a: Rgb, b: Rgb, t: number): Rgb {
 }
 
 function hexColors(sunlight: number, skylight: number, horizon: number, zenith: number): Colors {
-  const rgb = (hex: number): Rgb => [hex >> 16, (hex >> 8) & 255, hex & 255].map((v) => v / 255) as unknown as Rgb;
+  const rgb = (hex: number): Rgb =>
+    [hex >> 16, (hex >> 8) & 255, hex & 255].map((v) => v / 255) as unknown as Rgb;
   return {
     sunlight: rgb(sunlight),
     skylight: rgb(skylight),

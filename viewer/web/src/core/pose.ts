@@ -42,7 +42,10 @@ export function orbit(pose: Pose, pivot: Vec3, turnDeg: number, tiltDeg: number)
   const from = subtract(pose.eye, pivot);
   const axes = (p: Pose) => [rightOf(p), upOf(p), forward(p)] as const;
   const [old, now] = [axes(pose), axes({...pose, ...next})];
-  const moved = old.reduce<Vec3>((sum, axis, k) => add(sum, scale(now[k]!, dot(from, axis))), [0, 0, 0]);
+  const moved = old.reduce<Vec3>(
+    (sum, axis, k) => add(sum, scale(now[k]!, dot(from, axis))),
+    [0, 0, 0],
+  );
   return {eye: add(pivot, moved), ...next};
 }
 

@@ -30,8 +30,7 @@ export function selectTiles(
     const distanceM = distanceToBox(tile.box, eye);
     const rangeM = tile.children.length > 0 ? ranges[tile.level - 1]! : 0;
     const split =
-      distanceM < rangeM &&
-      !holdbacks.some((hold) => holdsBack(hold, tile.box, rangeM));
+      distanceM < rangeM && !holdbacks.some((hold) => holdsBack(hold, tile.box, rangeM));
     visits.push({tile, distanceM, split});
     if (split) open.push(...tile.children);
   }

@@ -19,8 +19,12 @@ export async function openSource(url: string): Promise<Source> {
 
 /** Opens a file from the user's disk. */
 export async function openFile(file: File): Promise<Source> {
-  const readRange: ReadRange = (offset, length) => file.slice(offset, offset + length).arrayBuffer();
-  return archiveSource(`file:///${encodeURIComponent(file.name)}`, await PmtilesArchive.open(readRange));
+  const readRange: ReadRange = (offset, length) =>
+    file.slice(offset, offset + length).arrayBuffer();
+  return archiveSource(
+    `file:///${encodeURIComponent(file.name)}`,
+    await PmtilesArchive.open(readRange),
+  );
 }
 
 export async function readJson(source: Source, url: string): Promise<unknown> {

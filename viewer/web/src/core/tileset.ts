@@ -83,7 +83,9 @@ export interface TileJson {
   children?: TileJson[];
   transform?: number[];
   implicitTiling?: {subtreeLevels: number; subtrees: {uri: string}};
-  extras?: {terrane?: {level?: number; x?: number; y?: number; triangles?: number; max_error_m?: number}};
+  extras?: {
+    terrane?: {level?: number; x?: number; y?: number; triangles?: number; max_error_m?: number};
+  };
 }
 
 interface LevelJson {
@@ -218,13 +220,15 @@ function parseLevels(json: LevelJson[], root: Tile): Level[] {
   for (const tile of tilesOf(root)) {
     boxes.set(tile.level, Math.max(boxes.get(tile.level) ?? 0, diagonal(tile.box)));
   }
-  const levels = [...json].sort((a, b) => a.level - b.level).map((level) => ({
-    level: level.level,
-    toleranceM: level.tolerance_m,
-    stepM: level.step_m,
-    // the boxes decide which tiles are shown, so theirs counts where it is larger
-    diagonalM: Math.max(level.largest_diagonal_m, boxes.get(level.level) ?? 0),
-  }));
+  const levels = [...json]
+    .sort((a, b) => a.level - b.level)
+    .map((level) => ({
+      level: level.level,
+      toleranceM: level.tolerance_m,
+      stepM: level.step_m,
+      // the boxes decide which tiles are shown, so theirs counts where it is larger
+      diagonalM: Math.max(level.largest_diagonal_m, boxes.get(level.level) ?? 0),
+    }));
   if (levels.length !== root.level + 1 || levels.some((level, i) => level.level !== i)) {
     throw new TilesetError(`terrane.json: levels are not 0 to ${root.level}, the root's level`);
   }

@@ -79,7 +79,10 @@ export function rampTexture(name: RampName): DataTexture {
 }
 
 function colorAt(stops: readonly Stop[], share: number): [number, number, number] {
-  const next = Math.max(1, stops.findIndex(([at]) => at >= share));
+  const next = Math.max(
+    1,
+    stops.findIndex(([at]) => at >= share),
+  );
   const [[low, from], [high, to]] = [stops[next - 1]!, stops[next]!];
   const t = (share - low) / (high - low);
   const channel = (shift: number) =>

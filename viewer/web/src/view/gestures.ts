@@ -78,8 +78,10 @@ export class Gestures {
 
   get held(): Held {
     const pair = (more: string[], less: string[]) =>
-      Number(more.some((key) => this.keys.has(key))) - Number(less.some((key) => this.keys.has(key)));
-    const turning = this.keys.has('ShiftLeft') || this.keys.has('ShiftRight') || this.moves.isFlying;
+      Number(more.some((key) => this.keys.has(key))) -
+      Number(less.some((key) => this.keys.has(key)));
+    const turning =
+      this.keys.has('ShiftLeft') || this.keys.has('ShiftRight') || this.moves.isFlying;
     const sideways = pair(['ArrowRight'], ['ArrowLeft']);
     const ahead = pair(['ArrowUp'], ['ArrowDown']);
     return {

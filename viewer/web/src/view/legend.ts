@@ -1,7 +1,14 @@
 // What the colours of a look mean.
 import type {Look} from '../core/settings';
 import type {Tileset} from '../core/tileset';
-import {cssColor, cssGradient, kLargestErrorShare, kSteepestDeg, levelColor, rampOf} from './color_ramps';
+import {
+  cssColor,
+  cssGradient,
+  kLargestErrorShare,
+  kSteepestDeg,
+  levelColor,
+  rampOf,
+} from './color_ramps';
 import {element} from './page';
 
 export function showLegend(look: Look, tileset: Tileset, tolerancePx: number): void {
@@ -26,7 +33,8 @@ export function showLegend(look: Look, tileset: Tileset, tolerancePx: number): v
 
 function endsOf(look: Look, {minHeightM, maxHeightM}: Tileset, tolerancePx: number) {
   if (look === 'slope') return ['0°', `${kSteepestDeg}°`] as const;
-  if (look === 'error') return ['0 px', `${(kLargestErrorShare * tolerancePx).toFixed(1)} px`] as const;
+  if (look === 'error')
+    return ['0 px', `${(kLargestErrorShare * tolerancePx).toFixed(1)} px`] as const;
   const metres = (value: number) => `${Math.round(value).toLocaleString('en')} m`;
   return [metres(minHeightM), metres(maxHeightM)] as const;
 }

@@ -73,7 +73,7 @@ export class Navigation implements Moves {
   /** Keeps the eye over the same part of a terrain whose heights are drawn differently. */
   setExaggeration(exaggeration: number): void {
     const [x, y, z] = this.pose.eye;
-    const ground = (this.ground.heightAt(x, y) ?? this.box.center[2] * this.exaggeration);
+    const ground = this.ground.heightAt(x, y) ?? this.box.center[2] * this.exaggeration;
     const seen = (ground / this.exaggeration) * exaggeration;
     this.pose = {...this.pose, eye: [x, y, z - ground + seen]};
     this.exaggeration = exaggeration;
@@ -246,7 +246,8 @@ export class Navigation implements Moves {
   private allowed(eye: Vec3): Vec3 {
     const [x, y, z] = eye;
     const ground = this.ground.heightAt(x, y);
-    if (ground !== undefined && z < ground + this.clearanceM) return [x, y, ground + this.clearanceM];
+    if (ground !== undefined && z < ground + this.clearanceM)
+      return [x, y, ground + this.clearanceM];
     const seen = seenBounds(boundsOf(this.box), this.exaggeration);
     const farthestM = kFarthest * length(subtract(seen.high, seen.low));
     const awayM = distanceToBounds(seen, eye);
@@ -257,9 +258,11 @@ export class Navigation implements Moves {
 
   private homePose(): Pose {
     const center = this.seenCenter();
-    const [u, v, w] = this.box.halfAxes.map(
-      ([x, y, z]): Vec3 => [x, y, z * this.exaggeration],
-    ) as [Vec3, Vec3, Vec3];
+    const [u, v, w] = this.box.halfAxes.map(([x, y, z]): Vec3 => [x, y, z * this.exaggeration]) as [
+      Vec3,
+      Vec3,
+      Vec3,
+    ];
     const seen = {center, halfAxes: [u, v, w]} as const;
     return poses.poseOf(firstCamera(seen, {fovDeg: kFovDeg, aspect: this.aspect}));
   }

@@ -81,7 +81,10 @@ export class Panel {
       Requests: String(figures.requests),
       Frame: frameMs === undefined ? 'still' : `${frameMs.toFixed(0)} ms`,
     };
-    const cells = Object.entries(rows).flatMap(([name, value]) => [cell('dt', name), cell('dd', value)]);
+    const cells = Object.entries(rows).flatMap(([name, value]) => [
+      cell('dt', name),
+      cell('dd', value),
+    ]);
     element('stats').replaceChildren(...cells);
   }
 

@@ -1,4 +1,12 @@
-import {Frustum, Matrix4, PerspectiveCamera, Scene, Vector3, WebGLRenderer, type Object3D} from 'three';
+import {
+  Frustum,
+  Matrix4,
+  PerspectiveCamera,
+  Scene,
+  Vector3,
+  WebGLRenderer,
+  type Object3D,
+} from 'three';
 import {corners, distanceToBox, type Box} from '../core/box';
 import type {HoldbackUniform, MorphUniforms} from '../core/morph';
 import {forward, type Pose} from '../core/pose';

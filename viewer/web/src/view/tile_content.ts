@@ -85,7 +85,8 @@ export function borderLines(content: TileContent): LineSegments {
   if (!content.borderLines) {
     const {geometry, material} = content.mesh;
     const lines = new BufferGeometry();
-    for (const name of ['position', 'toTarget']) lines.setAttribute(name, geometry.getAttribute(name));
+    for (const name of ['position', 'toTarget'])
+      lines.setAttribute(name, geometry.getAttribute(name));
     const {edges} = borderOf(content.indices, content.positions.length / 3);
     lines.setIndex(edges.flat());
     content.borderLines = fixed(

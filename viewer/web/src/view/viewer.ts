@@ -123,7 +123,9 @@ export class Viewer {
       const {shared} = this.view;
       shared.look.value = kLooks.indexOf(settings.look);
       shared.contourStrength.value = settings.contours ? 1 : 0;
-      shared.hazePerM.value = settings.haze ? 1 / (kHazeDiagonals * diagonal(this.tileset.root.box)) : 0;
+      shared.hazePerM.value = settings.haze
+        ? 1 / (kHazeDiagonals * diagonal(this.tileset.root.box))
+        : 0;
       this.applyLight();
     });
   }

@@ -45,7 +45,10 @@ async function useMouse(page) {
   await ready(page);
   const dragged = await placeAt(page, kX + 40, kY - 30);
   await page.mouse.up();
-  check(apart(before, dragged) < 8, `a drag keeps it under the cursor: ${apart(before, dragged).toFixed(1)} m`);
+  check(
+    apart(before, dragged) < 8,
+    `a drag keeps it under the cursor: ${apart(before, dragged).toFixed(1)} m`,
+  );
 
   await settle(page);
   await placeAt(page, kX, kY);
@@ -54,7 +57,10 @@ async function useMouse(page) {
   await ready(page);
   const zoomed = await placeAt(page, kX, kY);
   const came = far(kPose, await poseOf(page));
-  check(came > 300 && apart(before, zoomed) < 8, `the wheel came ${came.toFixed(0)} m closer to it: ${apart(before, zoomed).toFixed(1)} m`);
+  check(
+    came > 300 && apart(before, zoomed) < 8,
+    `the wheel came ${came.toFixed(0)} m closer to it: ${apart(before, zoomed).toFixed(1)} m`,
+  );
 
   await settle(page);
   await page.mouse.dblclick(kX, kY);
@@ -68,14 +74,21 @@ async function useMouse(page) {
   await page.mouse.up({button: 'right'});
   await ready(page);
   const turned = await poseOf(page);
-  check(Math.abs(turned.headingDeg - 35) < 1 && Math.abs(turned.pitchDeg + 55) < 1, `a right drag turns to ${turned.headingDeg.toFixed(0)} and tilts to ${turned.pitchDeg.toFixed(0)} degrees`);
+  check(
+    Math.abs(turned.headingDeg - 35) < 1 && Math.abs(turned.pitchDeg + 55) < 1,
+    `a right drag turns to ${turned.headingDeg.toFixed(0)} and tilts to ${turned.pitchDeg.toFixed(0)} degrees`,
+  );
   check(apart(before, await placeAt(page, kX, kY)) < 8, 'about the place under the cursor');
 }
 
 async function useKeys(page) {
   await settle(page);
   await page.focus('#terrain');
-  for (const [key, what] of [['ArrowUp', 'moves'], ['Equal', 'zooms'], ['Shift+ArrowLeft', 'turns']]) {
+  for (const [key, what] of [
+    ['ArrowUp', 'moves'],
+    ['Equal', 'zooms'],
+    ['Shift+ArrowLeft', 'turns'],
+  ]) {
     await settle(page);
     const [last, shift] = [key.split('+').at(-1), key.startsWith('Shift')];
     if (shift) await page.keyboard.down('Shift');
@@ -88,7 +101,10 @@ async function useKeys(page) {
     check(moved > 5, `${key} ${what}`);
   }
   await page.keyboard.press('f');
-  check((await page.getAttribute('#fly', 'aria-pressed')) === 'true' || (await flies(page)), 'F flies');
+  check(
+    (await page.getAttribute('#fly', 'aria-pressed')) === 'true' || (await flies(page)),
+    'F flies',
+  );
   await page.keyboard.press('f');
   await page.keyboard.press('h');
   await page.waitForTimeout(1300);
@@ -103,12 +119,19 @@ const flies = async (page) => {
 
 async function stayAboveGround(page) {
   let lowest = Infinity;
-  for (const [x, y] of [[-2300, -2500], [500, -1000], [-1000, 2500]]) {
+  for (const [x, y] of [
+    [-2300, -2500],
+    [500, -1000],
+    [-1000, 2500],
+  ]) {
     await settle(page, {eye: [x, y, -3000], headingDeg: 0, pitchDeg: 10});
-    lowest = Math.min(lowest, await page.evaluate(() => {
-      const {eye} = window.terrane.pose();
-      return eye[2] - window.terrane.groundZ(eye[0], eye[1]);
-    }));
+    lowest = Math.min(
+      lowest,
+      await page.evaluate(() => {
+        const {eye} = window.terrane.pose();
+        return eye[2] - window.terrane.groundZ(eye[0], eye[1]);
+      }),
+    );
   }
   check(lowest > 5, `the eye stays above the ground: ${lowest.toFixed(1)} m`);
 }
@@ -118,19 +141,43 @@ async function useTouch(page) {
   await settle(page);
   const session = await page.context().newCDPSession(page);
   const touch = (type, points) =>
-    session.send('Input.dispatchTouchEvent', {type, touchPoints: points.map(([x, y], id) => ({x, y, id}))});
+    session.send('Input.dispatchTouchEvent', {
+      type,
+      touchPoints: points.map(([x, y], id) => ({x, y, id})),
+    });
   const gesture = async (from, to) => {
     await touch('touchStart', from);
     for (let i = 1; i <= 6; ++i) {
-      await touch('touchMove', from.map((p, k) => p.map((v, axis) => v + ((to[k][axis] - v) * i) / 6)));
+      await touch(
+        'touchMove',
+        from.map((p, k) => p.map((v, axis) => v + ((to[k][axis] - v) * i) / 6)),
+      );
     }
     await touch('touchEnd', []);
     await ready(page);
   };
-  await gesture([[300, 240], [340, 240]], [[240, 240], [400, 240]]);
+  await gesture(
+    [
+      [300, 240],
+      [340, 240],
+    ],
+    [
+      [240, 240],
+      [400, 240],
+    ],
+  );
   check(far(kPose, await poseOf(page)) > 500, 'two fingers apart zoom in');
   await settle(page);
-  await gesture([[300, 200], [340, 200]], [[300, 280], [340, 280]]);
+  await gesture(
+    [
+      [300, 200],
+      [340, 200],
+    ],
+    [
+      [300, 280],
+      [340, 280],
+    ],
+  );
   const {pitchDeg} = await poseOf(page);
   check(pitchDeg < -55, `two fingers down tilt: ${pitchDeg.toFixed(0)} degrees`);
 }
@@ -155,13 +202,22 @@ async function useTools(page) {
   await page.click('#theme');
   await page.waitForTimeout(500);
   const {hash} = new URL(page.url());
-  check(/look=slope/.test(hash) && /contours=1/.test(hash) && /theme=dark/.test(hash) && /camera=/.test(hash), `permalink ${hash}`);
+  check(
+    /look=slope/.test(hash) &&
+      /contours=1/.test(hash) &&
+      /theme=dark/.test(hash) &&
+      /camera=/.test(hash),
+    `permalink ${hash}`,
+  );
   const pose = await poseOf(page);
   await page.reload();
   await page.waitForFunction(() => window.terrane);
   await ready(page);
   check(far(pose, await poseOf(page)) < 0.2, 'which brings the camera back');
-  check((await page.inputValue('#look')) === 'slope' && (await page.isChecked('#contours')), 'and the look');
+  check(
+    (await page.inputValue('#look')) === 'slope' && (await page.isChecked('#contours')),
+    'and the look',
+  );
 }
 
 /** Names for all controls, all reached by Tab, text that stands out: WCAG 2.1, 1.4.3 and 4.1.2. */
@@ -179,7 +235,17 @@ async function readWithoutMouse(page) {
     await page.keyboard.press('Tab');
     reached.add(await page.evaluate(() => document.activeElement?.id));
   }
-  const wanted = ['look', 'contours', 'tolerancePx', 'exaggeration', 'north', 'home', 'measure', 'theme', 'help'];
+  const wanted = [
+    'look',
+    'contours',
+    'tolerancePx',
+    'exaggeration',
+    'north',
+    'home',
+    'measure',
+    'theme',
+    'help',
+  ];
   const missed = wanted.filter((id) => !reached.has(id));
   check(missed.length === 0, `not reached by Tab: ${missed.join(', ') || 'none'}`);
   for (const theme of ['light', 'dark']) {
@@ -199,7 +265,9 @@ function lowestContrast() {
     return {rgb: [r, g, b], alpha: a / 255};
   };
   const luminance = (rgb) => {
-    const [r, g, b] = rgb.map((v) => (v / 255 <= 0.04045 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4));
+    const [r, g, b] = rgb.map((v) =>
+      v / 255 <= 0.04045 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4,
+    );
     return 0.2126 * r + 0.7152 * g + 0.0722 * b;
   };
   const style = getComputedStyle(document.documentElement);
@@ -241,7 +309,10 @@ async function run(folder) {
     await useTools(page);
     await readWithoutMouse(page);
     await playPath(context, server.url);
-    check(problems.console.length === 0, `console errors: ${problems.console.join('; ') || 'none'}`);
+    check(
+      problems.console.length === 0,
+      `console errors: ${problems.console.join('; ') || 'none'}`,
+    );
   });
   server.close();
 }

@@ -60,7 +60,10 @@ async function lookForCracks(page) {
     mismatches += seams.mismatches;
     cracks += picture.cracks;
   }
-  check(pairs > 0 && mismatches === 0, `${count} cameras: ${pairs} seams, ${vertices} vertices, ${mismatches} apart`);
+  check(
+    pairs > 0 && mismatches === 0,
+    `${count} cameras: ${pairs} seams, ${vertices} vertices, ${mismatches} apart`,
+  );
   check(loading === 0, `${loading} apart while loading`);
   check(cracks === 0, `${cracks} pixels of backdrop in gaps of the terrain`);
 }
@@ -69,7 +72,11 @@ async function lookForCracks(page) {
 function flightPose({min, max}, t) {
   const at = (k, share) => min[k] + share * (max[k] - min[k]);
   const size = Math.hypot(max[0] - min[0], max[1] - min[1]);
-  const eye = [at(0, 0.3 + 0.3 * t), at(1, 0.1 + 0.4 * t), max[2] + size * (0.02 + 0.3 * (1 - t) ** 2)];
+  const eye = [
+    at(0, 0.3 + 0.3 * t),
+    at(1, 0.1 + 0.4 * t),
+    max[2] + size * (0.02 + 0.3 * (1 - t) ** 2),
+  ];
   return {eye, headingDeg: 20 * t, pitchDeg: -40 + 15 * t};
 }
 
@@ -84,7 +91,10 @@ async function flyWithoutWaiting(page) {
     mismatches += seams.mismatches;
     held += (await page.evaluate(() => window.terrane.stats())).holdbacks;
   }
-  check(vertices > 0 && mismatches === 0, `${count} steps of a flight: ${vertices} vertices of seams, ${mismatches} apart; ${held} times held back`);
+  check(
+    vertices > 0 && mismatches === 0,
+    `${count} steps of a flight: ${vertices} vertices of seams, ${mismatches} apart; ${held} times held back`,
+  );
 }
 
 const kPlaces = 48;
@@ -101,7 +111,8 @@ function piecePoses(bounds, piece, steps) {
 async function changePerMetre(page, bounds, poses) {
   return page.evaluate(
     ([flight, {min, max}, places]) => {
-      const at = (i, k, stride) => min[k] + (0.3 + (0.4 * ((i * stride) % places)) / places) * (max[k] - min[k]);
+      const at = (i, k, stride) =>
+        min[k] + (0.3 + (0.4 * ((i * stride) % places)) / places) * (max[k] - min[k]);
       const heights = () =>
         [...Array(places).keys()].map((i) => window.terrane.groundZ(at(i, 0, 1), at(i, 1, 19)));
       let [largest, held, last] = [0, 0, undefined];
@@ -142,7 +153,10 @@ async function lookForPops(page) {
       held += found.held;
     }
   }
-  check(held === 0, `${options.pieces} pieces of ${steps}, ${2 * steps} and ${4 * steps} steps, no tile missing`);
+  check(
+    held === 0,
+    `${options.pieces} pieces of ${steps}, ${2 * steps} and ${4 * steps} steps, no tile missing`,
+  );
   // a jump would double at each halving of the step
   const grows = Math.max(changes[1] / changes[0], changes[2] / changes[1]);
   const text = changes.map((change) => change.toFixed(4)).join(', ');
@@ -156,7 +170,10 @@ async function largestPictureStep(page, bounds, steps, isFrozen) {
   await page.evaluate((on) => window.terrane.setFrozen(on), isFrozen);
   let largest = 0;
   for (let i = 0; i <= steps; ++i) {
-    await page.evaluate((pose) => window.terrane.setPose(pose), flightPose(bounds, 0.5 + (0.03 * i) / steps));
+    await page.evaluate(
+      (pose) => window.terrane.setPose(pose),
+      flightPose(bounds, 0.5 + (0.03 * i) / steps),
+    );
     await keepPicture(page, String(i % 2));
     if (i > 0) largest = Math.max(largest, (await differenceOf(page, '0', '1')).mean);
   }

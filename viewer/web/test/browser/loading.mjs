@@ -29,7 +29,10 @@ async function delayTiles(page) {
     asked.set(url, tries);
     const fails = tries === 1 && asked.size % 20 === 3;
     // the same delays in every run
-    const number = [...url].reduce((sum, letter) => (sum * 31 + letter.charCodeAt(0)) % 9973, tries);
+    const number = [...url].reduce(
+      (sum, letter) => (sum * 31 + letter.charCodeAt(0)) % 9973,
+      tries,
+    );
     await new Promise((resolve) => setTimeout(resolve, 50 + (number % 450)));
     await (fails ? route.fulfill({status: 503}) : route.continue()).catch(() => {});
   });
@@ -46,7 +49,10 @@ async function watchLoading(page) {
     held += (await page.evaluate(() => window.terrane.stats())).holdbacks;
     await page.waitForTimeout(80);
   }
-  check(held > 0 && seams > 0, `${kLooks} looks while loading: ${held} times held back, ${seams} seams`);
+  check(
+    held > 0 && seams > 0,
+    `${kLooks} looks while loading: ${held} times held back, ${seams} seams`,
+  );
   check(mismatches === 0, `${mismatches} vertices apart`);
   check(enclosed === 0, `${enclosed} pixels of backdrop inside the terrain`);
 }
@@ -72,7 +78,10 @@ async function run(folder) {
     await watchLoading(page);
     await finalPicture(page);
     const {tileMs} = await page.evaluate(() => window.terrane.stats());
-    check(tileMs < 4, `${tileMs.toFixed(2)} ms of the page's own time for a tile, decoding left out`);
+    check(
+      tileMs < 4,
+      `${tileMs.toFixed(2)} ms of the page's own time for a tile, decoding left out`,
+    );
     await page.evaluate((pixels) => (window.kept.expected = Uint8Array.from(pixels)), expected);
     const {largest} = await differenceOf(page, 'final', 'expected');
     check(largest === 0, `the final picture differs by ${largest} from that without delays`);

@@ -94,7 +94,8 @@ async function run(context) {
   if (options.write) await mkdir(options.images, {recursive: true});
   for (const [name, picture] of Object.entries(kPictures)) {
     // the panel folds itself on a small window, when it opens
-    if (picture.size) await page.evaluate(() => (document.getElementById('panel-fold').open = false));
+    if (picture.size)
+      await page.evaluate(() => (document.getElementById('panel-fold').open = false));
     await look(page, name, picture);
   }
 }

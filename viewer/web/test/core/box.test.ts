@@ -58,7 +58,14 @@ describe('distanceToBox', () => {
   });
 
   it('counts the height over a flat box', () => {
-    const flat: Box = {center: [0, 0, 0], halfAxes: [[1, 0, 0], [0, 1, 0], [0, 0, 0]]};
+    const flat: Box = {
+      center: [0, 0, 0],
+      halfAxes: [
+        [1, 0, 0],
+        [0, 1, 0],
+        [0, 0, 0],
+      ],
+    };
     expect(distanceToBox(flat, [0.5, 0.5, 7])).toBeCloseTo(7, 12);
     expect(distanceToBox(flat, [4, 0, 4])).toBeCloseTo(5, 12);
   });

@@ -5,7 +5,11 @@ import {cross, dot, normalize, subtract} from '../../src/core/vec3';
 
 const box = (x: number, y: number, z: number): Box => ({
   center: [100, -200, 1500],
-  halfAxes: [[x, 0, 0], [0, y, 0], [0, 0, z]],
+  halfAxes: [
+    [x, 0, 0],
+    [0, y, 0],
+    [0, 0, z],
+  ],
 });
 
 describe('firstCamera', () => {

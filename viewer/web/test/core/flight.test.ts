@@ -130,4 +130,3 @@ describe('a flight', () => {
     expect(frame!.settled).toBe(true);
   }, 60000);
 });
-

@@ -4,7 +4,9 @@ import {readGlb, type DecodeMeshopt} from '../../src/core/glb';
 import {glbOf, makeTile} from '../synthetic_tiles.mjs';
 
 const decode: DecodeMeshopt = (...stream) =>
-  MeshoptDecoder.decodeGltfBuffer(...(stream as Parameters<typeof MeshoptDecoder.decodeGltfBuffer>));
+  MeshoptDecoder.decodeGltfBuffer(
+    ...(stream as Parameters<typeof MeshoptDecoder.decodeGltfBuffer>),
+  );
 
 const bytesOf = (tile: unknown): ArrayBuffer => {
   const made = glbOf(tile as Parameters<typeof glbOf>[0]) as Uint8Array;

@@ -90,8 +90,7 @@ describe('Holdbacks', () => {
         if (holds.length < missing.length) ++gathered;
         for (const {box} of missing) {
           const isHeld = holds.some(
-            ({bounds, heightM}) =>
-              heightM >= 1e5 && farthestDistance(box, bounds) === 0,
+            ({bounds, heightM}) => heightM >= 1e5 && farthestDistance(box, bounds) === 0,
           );
           expect(isHeld).toBe(true);
         }

@@ -60,7 +60,14 @@ function rangesOf(bytes: Buffer): ReadRange {
 describe('tileId', () => {
   it('is that of the specification', () => {
     // PMTiles 3, section 4.1.1
-    const known = [[0, 0, 0, 0], [1, 0, 0, 1], [1, 0, 1, 2], [1, 1, 1, 3], [1, 1, 0, 4], [2, 0, 0, 5]];
+    const known = [
+      [0, 0, 0, 0],
+      [1, 0, 0, 1],
+      [1, 0, 1, 2],
+      [1, 1, 1, 3],
+      [1, 1, 0, 4],
+      [2, 0, 0, 5],
+    ];
     for (const [z, x, y, id] of known) expect(tileId(z!, x!, y!)).toBe(id);
     expect(tileId(12, 3423, 1763)).toBe(19078479);
   });

@@ -49,7 +49,10 @@ describe('zoom', () => {
       const aside = add(point, scale(poses.rightOf(pose), 50));
       const near = poses.zoom(pose, aside, 0.5);
       expectSamePlace(inPicture(near, aside), inPicture(pose, aside));
-      expect(length(subtract(near.eye, aside))).toBeCloseTo(length(subtract(pose.eye, aside)) / 2, 6);
+      expect(length(subtract(near.eye, aside))).toBeCloseTo(
+        length(subtract(pose.eye, aside)) / 2,
+        6,
+      );
     }
   });
 });
@@ -89,7 +92,9 @@ describe('poseOf', () => {
 
 describe('between', () => {
   it('turns the short way', () => {
-    const [a, b] = [170, -170].map((headingDeg) => ({eye: [0, 0, 0], headingDeg, pitchDeg: 0}) as const);
+    const [a, b] = [170, -170].map(
+      (headingDeg) => ({eye: [0, 0, 0], headingDeg, pitchDeg: 0}) as const,
+    );
     expect(Math.abs(poses.between(a!, b!, 0.5).headingDeg)).toBeCloseTo(180, 9);
   });
 });

@@ -69,6 +69,6 @@ function makeTile(parent: Tile | null, id: Id, isThere: (id: Id) => boolean): Ti
 /** Somewhere over, in or beside the quadtree: heights from 50 m to four times its width. */
 export function randomEye(top: number, random: () => number): Vec3 {
   const size = kLeafM * 2 ** top;
-  const height = 50 * (4 * size / 50) ** random();
+  const height = 50 * ((4 * size) / 50) ** random();
   return [size * (1.6 * random() - 0.3), size * (1.6 * random() - 0.3), height];
 }

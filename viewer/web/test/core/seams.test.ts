@@ -23,7 +23,11 @@ function drawn(level: number, x: number, y: number, ranges: number[], change = (
   change(stored);
   const step = 2 ** level / 16;
   const place = {level, origin: stored.origin, stepM: [step, step, step] as Vec3};
-  const tile: DrawnTile = {...stored, octave: level, uniforms: morphUniforms(place, ranges, kEye, [0, 0, 0])};
+  const tile: DrawnTile = {
+    ...stored,
+    octave: level,
+    uniforms: morphUniforms(place, ranges, kEye, [0, 0, 0]),
+  };
   return tile;
 }
 

@@ -75,7 +75,10 @@ const kTop = 3;
 
 /** x and y with their bits in turn, x first. */
 function morton(x: number, y: number): number {
-  return [0, 1, 2].reduce((code, bit) => code | (((x >> bit) & 1) << (2 * bit)) | (((y >> bit) & 1) << (2 * bit + 1)), 0);
+  return [0, 1, 2].reduce(
+    (code, bit) => code | (((x >> bit) & 1) << (2 * bit)) | (((y >> bit) & 1) << (2 * bit + 1)),
+    0,
+  );
 }
 
 /** The subtree file of a tile at a depth, as the specification lays it out. */

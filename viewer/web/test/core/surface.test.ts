@@ -45,7 +45,13 @@ describe('Surface', () => {
   });
 
   it('has no gap where triangles meet, and none at the edge', () => {
-    for (const [x, y] of [[500, 500], [0, 0], [1000, 1000], [1000, 0], [250, 750]] as const) {
+    for (const [x, y] of [
+      [500, 500],
+      [0, 0],
+      [1000, 1000],
+      [1000, 0],
+      [250, 750],
+    ] as const) {
       expect(surface(0).heightAt(x, y)).toBeCloseTo((x + 2 * y) / 10, 6);
     }
     expect(surface(0).heightAt(1001, 500)).toBeUndefined();
