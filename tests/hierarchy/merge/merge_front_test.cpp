@@ -17,7 +17,7 @@ using namespace testing;
 /// Frames of a walk: few where every change is tested, 10,000 where someone asks for them.
 int frames_of_a_walk() {
   const char* const wanted = std::getenv("TERRANE_WALK_FRAMES");
-  return wanted != nullptr ? std::atoi(wanted) : 300;
+  return wanted != nullptr ? std::atoi(wanted) : 200;
 }
 
 std::uint64_t directed(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
