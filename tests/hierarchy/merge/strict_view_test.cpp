@@ -117,7 +117,7 @@ TEST(StrictView, EveryVertexOfAnObjectIsWithinTheErrorOfWhatIsShown) {
   const MergeTree tree = build_merge_tree(torn_torus(60, 24));
   MergeFront front(tree);
   RandomViews views(tree, 8);
-  for (int view = 0; view < 20; ++view) {
+  for (int view = 0; view < 6; ++view) {
     front.update(ViewJudge(tree, views.camera(), {.tolerance_px = 3}));
     double bound = 0;
     for (std::uint32_t i = 0; i < tree.merge_count(); ++i) {
