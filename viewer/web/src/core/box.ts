@@ -18,10 +18,11 @@ const known = new WeakMap<Box, Bounds>();
 export function boundsOf(box: Box): Bounds {
   let bounds = known.get(box);
   if (!bounds) {
-    const half = ([0, 1, 2] as const).map((k) =>
-      box.halfAxes.reduce((sum, axis) => sum + Math.abs(axis[k]), 0),
-    ) as unknown as Vec3;
-    bounds = {low: subtract(box.center, half), high: add(box.center, half)};
+    // from the corners, so that rounding puts none of them outside
+    const extreme = (pick: (...values: number[]) => number) =>
+      ([0, 1, 2] as const).map((k) => pick(...corners(box).map((corner) => corner[k])));
+    const [low, high] = [extreme(Math.min), extreme(Math.max)] as unknown as [Vec3, Vec3];
+    bounds = {low, high};
     known.set(box, bounds);
   }
   return bounds;

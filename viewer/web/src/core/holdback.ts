@@ -41,6 +41,9 @@ interface Patch {
 /** Seconds in which a patch sinks by half: one level of a ladder that doubles fades in. */
 export const kOctaveS = 0.15;
 
+/** A box may stick out of its parent's by the last digits that a file holds. */
+const kRounding = 1e-9;
+
 /** What the vertex shader has room for. */
 export const kMostHoldbacks = 64;
 
@@ -48,7 +51,7 @@ export const kMostHoldbacks = 64;
 export function holdsBack({bounds, heightM}: Holdback, box: Box, rangeM: number): boolean {
   // mostly its middle decides
   if (heightM - distanceToBounds(bounds, box.center) < rangeM) return false;
-  return heightM - farthestDistance(box, bounds) >= rangeM;
+  return heightM - farthestDistance(box, bounds) >= rangeM * (1 - kRounding);
 }
 
 /**

@@ -1,7 +1,8 @@
 import {describe, expect, it} from 'vitest';
-import {distanceToBounds, farthestDistance} from '../../src/core/box';
+import {boundsOf, distanceToBounds, farthestDistance, type Box} from '../../src/core/box';
 import {
   Holdbacks,
+  holdsBack,
   kMostHoldbacks,
   kOctaveS,
   tilesWithoutChildren,
@@ -53,6 +54,24 @@ describe('Holdbacks', () => {
     expect(lastRise).toBeGreaterThan(200);
     // the ranges move a little with the eye too
     expect(largestStep).toBeLessThan(2 * 10);
+  });
+
+  it('keep a tile whole whose children are missing, however its box is turned', () => {
+    const random = randomSource(4);
+    for (let i = 0; i < 2000; ++i) {
+      const [cos, sin] = [Math.cos(random()), Math.sin(random())];
+      const [x, y, z] = [300 * random(), 200 * random(), 50 * random()];
+      const turned: Box = {
+        center: [1e4 * random(), 1e4 * random(), 1e3 * random()],
+        halfAxes: [
+          [x * cos, x * sin, 0.01 * random()],
+          [-y * sin, y * cos, 0.02 * random()],
+          [0.1 * random(), 0, z],
+        ],
+      };
+      const rangeM = 1e4 * random();
+      expect(holdsBack({bounds: boundsOf(turned), heightM: rangeM}, turned, rangeM)).toBe(true);
+    }
   });
 
   it('sink, once the tile is there, until nothing stands out', () => {
