@@ -17,10 +17,9 @@ constexpr std::size_t kMostAtOnce = std::numeric_limits<uInt>::max();
 // zlib's interface predates const; it does not write to its input
 Bytef* input_of(const char* bytes) { return reinterpret_cast<Bytef*>(const_cast<char*>(bytes)); }
 
-std::string compress(std::string_view content, int window) {
+std::string compress(std::string_view content, int window, int level) {
   z_stream stream = {};
-  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, window, 8, Z_DEFAULT_STRATEGY) !=
-      Z_OK) {
+  if (deflateInit2(&stream, level, Z_DEFLATED, window, 8, Z_DEFAULT_STRATEGY) != Z_OK) {
     throw std::bad_alloc();
   }
   std::string compressed;
@@ -68,8 +67,13 @@ std::optional<std::string> decompress(std::string_view bytes, std::uint64_t most
 
 }  // namespace
 
-std::string gzip(std::string_view content) { return compress(content, kGzipWindow); }
-std::string deflate_raw(std::string_view content) { return compress(content, kRawWindow); }
+std::string gzip(std::string_view content, int level) {
+  return compress(content, kGzipWindow, level);
+}
+
+std::string deflate_raw(std::string_view content) {
+  return compress(content, kRawWindow, Z_BEST_COMPRESSION);
+}
 
 std::optional<std::string> gunzip(std::string_view bytes, std::uint64_t most_bytes) {
   return decompress(bytes, most_bytes, kGzipWindow);

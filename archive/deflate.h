@@ -7,8 +7,10 @@
 
 namespace terrane::archive {
 
-/// Compresses as hard as zlib can; the same content gives the same bytes (no time, no name).
-std::string gzip(std::string_view content);
+/// Compresses; the same content gives the same bytes (no time, no name).
+/// \param level  of zlib, from 1 (fast) to 9 (small).
+std::string gzip(std::string_view content, int level = 9);
+/// The same without a header and a checksum, as small as zlib can.
 std::string deflate_raw(std::string_view content);
 
 /// Undoes gzip() or deflate_raw(). Nothing if the bytes are damaged, or would become more than

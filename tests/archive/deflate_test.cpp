@@ -18,6 +18,16 @@ TEST(Deflate, UnpacksToWhatWentIn) {
   }
 }
 
+TEST(Deflate, HoldsNoTimeAndNoName) {
+  // RFC 1952, section 2.3: magic number, deflate, no flags, a time of zero
+  EXPECT_EQ(gzip("terrane").substr(0, 8), std::string("\x1f\x8b\x08\0\0\0\0\0", 8));
+}
+
+TEST(Deflate, LevelsTradeBytesForTime) {
+  EXPECT_LT(gzip(long_text()).size(), gzip(long_text(), 1).size());
+  EXPECT_EQ(gunzip(gzip(long_text(), 1), 1 << 20), long_text());
+}
+
 TEST(Deflate, RefusesMoreThanItMayBecome) {
   const std::string text(100'000, 'a');
   EXPECT_EQ(gunzip(gzip(text), text.size()), text);

@@ -7,7 +7,6 @@
 
 #include "archive/deflate.h"
 #include "viewer/server/content_coding.h"
-#include "viewer/server/gzip.h"
 #include "viewer/server/media_type.h"
 #include "viewer/server/url_path.h"
 
@@ -18,6 +17,7 @@ namespace {
 constexpr std::uint64_t kLargestGzipBytes = 64 << 20;
 constexpr std::uint64_t kSmallestGzipBytes = 256;  // less becomes no packet less
 constexpr std::uint64_t kLargestPlainBytes = 1 << 30;
+constexpr int kGzipLevel = 4;                   // the viewer: half the time of 6, 5 % more bytes
 constexpr std::uint64_t kQuickBytes = 1 << 18;  // compressed in a few milliseconds
 constexpr std::size_t kLongestTarget = 8192;
 
@@ -127,7 +127,8 @@ class Answering {
     }
     const std::string key = path_ + "\n" + file.tag;
     if (takes_time(bytes, key)) return std::nullopt;
-    const auto text = cache_.get(key, [&] { return gzip(file.content.read_all()); });
+    const auto text =
+        cache_.get(key, [&] { return archive::gzip(file.content.read_all(), kGzipLevel); });
     return Representation{FileContent(text), file.tag + "-gz", "gzip"};
   }
 
