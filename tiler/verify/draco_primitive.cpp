@@ -23,7 +23,7 @@ std::size_t DracoPrimitive::vertices() const { return decoded_->mesh->num_points
 std::vector<std::uint32_t> DracoPrimitive::indices() const {
   std::vector<std::uint32_t> indices;
   for (std::uint32_t f = 0; f < decoded_->mesh->num_faces(); ++f) {
-    for (const draco::PointIndex corner : decoded_->mesh->face(draco::FaceIndex(f))) {
+    for (const draco::PointIndex& corner : decoded_->mesh->face(draco::FaceIndex(f))) {
       indices.push_back(corner.value());
     }
   }

@@ -45,7 +45,8 @@ template <class T>
 Glb::Vector vector_of(const unsigned char* element) {
   std::array<T, 3> values;
   std::memcpy(values.data(), element, sizeof values);
-  return {values[0], values[1], values[2]};
+  const auto as_double = [&](std::size_t axis) { return static_cast<double>(values[axis]); };
+  return {as_double(0), as_double(1), as_double(2)};
 }
 
 }  // namespace
