@@ -93,14 +93,16 @@ void run(const BuildCommand& command, const CommonOptions& common) {
   settings.build.texture = texture.get();
   const HeightStatistics statistics = ingest::scan_heights(*dem, *progress);
   tiler::OutputFolder(command.out).claim(command.force);
-  tiler::write_whole_file(command.out / "build.toml", to_toml(settings));
   if (settings.geodetic.is_geodetic()) {
-    report(
-        build_geodetic(*dem, statistics, settings.geodetic, settings.build, command.out, *progress),
-        command.out);
+    const tiler::BuildResult result =
+        build_geodetic(*dem, statistics, settings.geodetic, settings.build, command.out, *progress);
+    // not before: a run that is killed while it resamples leaves nothing in the folder
+    tiler::write_whole_file(command.out / "build.toml", to_toml(settings));
+    report(result, command.out);
     return;
   }
   viewer::write_viewer(command.out);
+  tiler::write_whole_file(command.out / "build.toml", to_toml(settings));
   report(tiler::build(dem->heights(), dem->place(), statistics, settings.build, command.out,
                       *progress),
          command.out);

@@ -24,17 +24,17 @@ async function look(context, name) {
   const {page, problems} = await open(context, `${server.url}/cesium.html`);
   const asked = new Set();
   page.on('response', (response) => asked.add(new URL(response.url()).pathname));
-  const shown = await page.evaluate(show, {name, bounds: layer.bounds, hasWater: layer.extensions.includes('watermask')});
+  const shown = await page.evaluate(show, {name, bounds: layer.bounds, maxzoom: layer.maxzoom, hasWater: layer.extensions.includes('watermask')});
   const {drawn, colours} = await lookAt(page, await takePicture(page, join(pictures, `cesium_terrain_${name}.png`)), kBackground);
 
   const errors = [...shown.errors, ...problems.errors, ...problems.requests];
   check(errors.length === 0, `${name}: no error ${errors.slice(0, 3)}`);
   check(shown.isLoaded, `${name}: all tiles are loaded`);
   const finest = [...asked].filter((path) => path.startsWith(`/tiles/${name}/${layer.maxzoom}/`));
-  check(finest.length > 0 && shown.deepest === layer.maxzoom,
+  check(finest.length > 0 && shown.deepest >= layer.maxzoom,
     `${name}: the finest tiles are drawn (${shown.tiles} tiles to zoom ${shown.deepest}; ${finest.length} of the finest loaded)`);
   check(shown.hasNormals, `${name}: vertex normals are read`);
-  check(drawn > 0.3 && colours > 50, `${name}: the picture is not blank (${(100 * drawn).toFixed(0)} %, ${colours} colours)`);
+  check(drawn > 0.2 && colours > 50, `${name}: the picture is not blank (${(100 * drawn).toFixed(0)} %, ${colours} colours)`);
   await compareHeights(page, name, summary);
   await page.close();
 }
@@ -54,7 +54,7 @@ async function compareHeights(page, name, {zooms, resampling}) {
 
 // the functions below run in the page
 
-async function show({name, bounds, hasWater}) {
+async function show({name, bounds, maxzoom, hasWater}) {
   const terrainProvider = await Cesium.CesiumTerrainProvider.fromUrl(`/tiles/${name}`, {
     requestVertexNormals: true, requestWaterMask: hasWater, requestMetadata: true,
   });
@@ -78,8 +78,8 @@ async function show({name, bounds, hasWater}) {
     const middle = Cesium.Cartographic.fromDegrees((west + east) / 2, (south + north) / 2);
     const [sampled] = await Cesium.sampleTerrainMostDetailed(terrainProvider, [middle]);
     const target = Cesium.Cartographic.toCartesian(sampled);
-    const width = Cesium.Rectangle.computeWidth(Cesium.Rectangle.fromDegrees(west, south, east, north)) * 6.4e6;
-    camera.lookAt(target, new Cesium.HeadingPitchRange(0.4, -0.5, 0.35 * width));
+    const finestError = 77067 / 2 ** maxzoom;
+    camera.lookAt(target, new Cesium.HeadingPitchRange(0.4, -0.5, 250 * finestError));
   }
   let calm = 0;
   for (let frames = 0; calm < 20 && frames < 3000; ++frames) {
