@@ -6,11 +6,14 @@
 #include <sstream>
 
 #include "core/errors.h"
+#include "hierarchy/volume/material_fields.h"
 #include "ingest/scan.h"
 #include "model/formula_field.h"
 #include "model/ground_surface.h"
 #include "model/mesh_file.h"
 #include "model/prism_surface.h"
+#include "model/raster_field.h"
+#include "model/rectilinear_field.h"
 
 namespace terrane::model {
 namespace {
@@ -45,12 +48,7 @@ SurfaceMesh read_ground(const SurfaceSettings& settings, const PlanFrame& frame,
     ingest::OpenOptions options;
     if (!settings.nodata.empty()) options.nodata = settings.nodata;
     dems.push_back(ingest::open_dem({source}, options, progress));
-    const bool is_on_earth = !dems.back()->place().crs_wkt().empty();
-    if (is_on_earth != frame.is_on_earth()) {
-      throw InputError(fmt::format("{}: {}. Give the box in {}", dems.back()->name(),
-                                   is_on_earth ? "has a CRS" : "has no CRS",
-                                   is_on_earth ? "degrees (west_deg ...)" : "metres (west_m ...)"));
-    }
+    require_same_kind(dems.back()->name(), dems.back()->place(), frame);
     ingest::scan_heights(*dems.back(), progress);  // refuses undeclared voids
     order.push_back(dems.back().get());
   }
@@ -135,17 +133,30 @@ std::vector<Side> parse_where(const ModelSettings& settings, const MaterialSetti
   return sides;
 }
 
-NamedField make_field(const ModelSettings& settings, const FieldSettings& field, const Box& box) {
-  std::vector<std::string> formulas(settings.materials.size());
-  for (const auto& [name, formula] : field.formulas) {
+std::shared_ptr<const Field> read_field(const FieldSettings& field, const FieldSource& source,
+                                        const PlanFrame& frame, const Box& box,
+                                        Progress& progress) {
+  if (!source.raster.empty()) return raster_field(field.name, source, frame, box, progress);
+  if (!source.grid.empty()) return rectilinear_field(field.name, source, box, progress);
+  return formula_field(field.name, source.formula, box, field.samples);
+}
+
+NamedField make_field(const ModelSettings& settings, const FieldSettings& field,
+                      const PlanFrame& frame, const Box& box, Progress& progress) {
+  std::vector<FieldSource> sources(settings.materials.size());
+  for (const auto& [name, source] : field.sources) {
     const auto at = std::ranges::find(settings.materials, name, &MaterialSettings::name);
     if (at == settings.materials.end()) {
       throw ConfigError(fmt::format("{}: field {} names a material {} that is not there",
                                     settings.file, field.name, name));
     }
-    formulas[static_cast<std::size_t>(at - settings.materials.begin())] = formula;
+    sources[static_cast<std::size_t>(at - settings.materials.begin())] = source;
   }
-  return {field.name, field.unit, formula_field(field.name, formulas, box, field.samples)};
+  std::vector<std::shared_ptr<const Field>> fields;
+  for (const FieldSource& source : sources) {
+    fields.push_back(read_field(field, source, frame, box, progress));
+  }
+  return {field.name, field.unit, std::make_shared<MaterialFields>(std::move(fields))};
 }
 
 }  // namespace
@@ -170,7 +181,7 @@ Model build_model(const ModelSettings& settings, Progress& progress) {
     volume.materials.push_back({material.name, parse_where(settings, material), material.is_empty});
   }
   for (const FieldSettings& field : settings.fields) {
-    volume.fields.push_back(make_field(settings, field, volume.box));
+    volume.fields.push_back(make_field(settings, field, frame, volume.box, progress));
     model.tolerances.fields.push_back(field.tolerance);
   }
   return model;

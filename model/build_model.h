@@ -22,7 +22,8 @@ struct Model {
 ///
 /// \throws InputError naming file or surface for what cannot be used: files that cannot be read,
 ///         open or self-intersecting meshes, DEMs without data in the box, a surface under the one
-///         that it is said to lie over by more than both tolerances, a field with NaN.
+///         that it is said to lie over by more than both tolerances, a field with NaN, without data in the box or
+///         beside it.
 /// \throws ConfigError for names that are not known, or formulas that cannot be read.
 Model build_model(const ModelSettings& settings, Progress& progress);
 

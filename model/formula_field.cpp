@@ -8,8 +8,7 @@
 namespace terrane::model {
 
 std::shared_ptr<const hierarchy::volume::Field> formula_field(
-    const std::string& name, const std::vector<std::string>& formulas,
-    const hierarchy::volume::Box& box, const std::array<int, 3>& samples) {
+    const std::string& name, const std::string& formula, const hierarchy::volume::Box& box, const std::array<int, 3>& samples) {
   std::array<std::vector<double>, 3> axes;
   for (int axis = 0; axis < 3; ++axis) {
     if (samples[axis] < 2 || samples[axis] > 1000) {
@@ -20,33 +19,31 @@ std::shared_ptr<const hierarchy::volume::Field> formula_field(
       axes[axis].push_back(box.low[axis] + box.size()[axis] * i / (samples[axis] - 1));
     }
   }
-  std::vector<std::vector<double>> values;
-  for (const std::string& formula : formulas) {
-    double x = 0, y = 0, z = 0;
-    mu::Parser parser;
-    parser.DefineVar("x", &x);
-    parser.DefineVar("y", &y);
-    parser.DefineVar("z", &z);
-    auto& list = values.emplace_back();
-    try {
-      parser.SetExpr(formula.empty() ? "0" : formula);
-      for (const double c : axes[2]) {
-        for (const double b : axes[1]) {
-          for (const double a : axes[0]) {
-            x = a;
-            y = b;
-            z = c;
-            list.push_back(parser.Eval());
-          }
+  std::vector<double> values;
+  double x = 0, y = 0, z = 0;
+  mu::Parser parser;
+  parser.DefineVar("x", &x);
+  parser.DefineVar("y", &y);
+  parser.DefineVar("z", &z);
+  try {
+    parser.SetExpr(formula.empty() ? "0" : formula);
+    for (const double c : axes[2]) {
+      for (const double b : axes[1]) {
+        for (const double a : axes[0]) {
+          x = a;
+          y = b;
+          z = c;
+          values.push_back(parser.Eval());
         }
       }
-    } catch (const mu::Parser::exception_type& error) {
-      throw ConfigError(fmt::format("field {}: '{}' is no formula of x, y and z ({})", name,
-                                    formula, error.GetMsg()));
     }
+  } catch (const mu::Parser::exception_type& error) {
+    throw ConfigError(fmt::format("field {}: '{}' is no formula of x, y and z ({})", name, formula,
+                                  error.GetMsg()));
   }
   try {
-    return std::make_shared<hierarchy::volume::GridField>(std::move(axes), std::move(values));
+    return std::make_shared<hierarchy::volume::GridField>(
+        std::move(axes), std::vector<std::vector<double>>{std::move(values)});
   } catch (const InputError& error) {
     throw InputError(fmt::format("field {}: {}", name, error.what()));
   }

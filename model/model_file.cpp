@@ -60,18 +60,26 @@ class Entry {
     }
     return result;
   }
-  std::vector<std::pair<std::string, std::string>> texts_by_key() const {
-    if (!node_.is_table()) refuse("a table of strings");
-    std::vector<std::pair<std::string, std::string>> result;
-    for (const auto& [key, item] : *node_.as_table()) {
-      const std::string name(key.str());
-      // a number is a formula, too
-      const Entry entry(file_, key_ + "." + name, item);
-      result.emplace_back(name,
-                          item.is_number() ? fmt::format("{}", entry.number()) : entry.text());
+  std::vector<double> numbers() const {
+    if (!node_.is_array()) refuse("a list of numbers");
+    std::vector<double> result;
+    for (const toml::node& item : *node_.as_array()) {
+      result.push_back(Entry(file_, key_, item).number());
     }
     return result;
   }
+  /// Names of a table's keys and their values.
+  std::vector<std::pair<std::string, Entry>> items() const {
+    if (!node_.is_table()) refuse("a table");
+    std::vector<std::pair<std::string, Entry>> result;
+    for (const auto& [key, item] : *node_.as_table()) {
+      const std::string name(key.str());
+      result.emplace_back(name, Entry(file_, key_ + "." + name, item));
+    }
+    return result;
+  }
+  bool is_table() const { return node_.is_table(); }
+  bool is_number() const { return node_.is_number(); }
 
  private:
   const std::string& file_;
@@ -116,6 +124,35 @@ const Readers<MaterialSettings> kMaterial = {
     {"empty", [](const Entry& e, MaterialSettings& to) { to.is_empty = e.truth(); }},
 };
 
+const Readers<FieldSource> kSource = {
+    {"formula", [](const Entry& e, FieldSource& to) { to.formula = e.text(); }},
+    {"raster", [](const Entry& e, FieldSource& to) { to.raster = e.text(); }},
+    {"levels_m", [](const Entry& e, FieldSource& to) { to.levels_m = e.numbers(); }},
+    {"nodata", [](const Entry& e, FieldSource& to) { to.nodata = e.text(); }},
+    {"grid", [](const Entry& e, FieldSource& to) { to.grid = e.text(); }},
+    {"array", [](const Entry& e, FieldSource& to) { to.array = e.text(); }},
+};
+
+FieldSource source_of(const Entry& entry) {
+  FieldSource source;
+  if (!entry.is_table()) {
+    // a number is a formula, too
+    source.formula = entry.is_number() ? fmt::format("{}", entry.number()) : entry.text();
+    return source;
+  }
+  for (const auto& [key, value] : entry.items()) {
+    const auto reader = kSource.find(key);
+    if (reader == kSource.end()) {
+      value.refuse("one of formula, raster with levels_m and nodata, grid with array");
+    }
+    reader->second(value, source);
+  }
+  const int kinds = (source.formula.empty() ? 0 : 1) + (source.raster.empty() ? 0 : 1) +
+                    (source.grid.empty() ? 0 : 1);
+  if (kinds != 1) entry.refuse("one of formula, raster and grid");
+  return source;
+}
+
 const Readers<FieldSettings> kField = {
     {"name", [](const Entry& e, FieldSettings& to) { to.name = e.text(); }},
     {"unit", [](const Entry& e, FieldSettings& to) { to.unit = e.text(); }},
@@ -124,7 +161,12 @@ const Readers<FieldSettings> kField = {
      [](const Entry& e, FieldSettings& to) {
        for (std::size_t k = 0; k < 3; ++k) to.samples[k] = static_cast<int>(e.three()[k]);
      }},
-    {"of", [](const Entry& e, FieldSettings& to) { to.formulas = e.texts_by_key(); }},
+    {"of",
+     [](const Entry& e, FieldSettings& to) {
+       for (const auto& [material, entry] : e.items()) {
+         to.sources.emplace_back(material, source_of(entry));
+       }
+     }},
 };
 
 const Readers<SectionSettings> kSection = {

@@ -26,12 +26,23 @@ struct MaterialSettings {
   bool is_empty = false;
 };
 
+/// Where a field's values in one material come from: one of formula, raster and grid; with none of
+/// them they are 0.
+struct FieldSource {
+  std::string formula;           ///< of x, y and z
+  std::string raster;            ///< one band for each level
+  std::vector<double> levels_m;  ///< heights of the bands, rising; empty for a raster of one band
+  std::string nodata;            ///< of the raster, as `terrane build --nodata`; empty: as it says
+  std::string grid;              ///< VTK rectilinear grid (.vtr), in metres of the model
+  std::string array;             ///< of the grid; empty: its only one
+};
+
 struct FieldSettings {
   std::string name;
   std::string unit;
   double tolerance = std::numeric_limits<double>::infinity();
   std::array<int, 3> samples = {2, 2, 2};
-  std::vector<std::pair<std::string, std::string>> formulas;  ///< material, formula
+  std::vector<std::pair<std::string, FieldSource>> sources;  ///< material, where from
 };
 
 /// A cross-section: the places p with normal . p = offset_m.

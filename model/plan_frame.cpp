@@ -1,5 +1,7 @@
 #include "model/plan_frame.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <GeographicLib/TransverseMercator.hpp>
 #include <cmath>
@@ -38,6 +40,15 @@ LonLat PlanFrame::to_lon_lat(PlanPosition position) const {
                                 position.y + projection_->north_of_equator_m, place.latitude_deg,
                                 place.longitude_deg);
   return place;
+}
+
+void require_same_kind(const std::string& name, const Georeference& place,
+                       const PlanFrame& frame) {
+  const bool is_on_earth = !place.crs_wkt().empty();
+  if (is_on_earth == frame.is_on_earth()) return;
+  throw InputError(fmt::format("{}: {}. Give the box in {}", name,
+                               is_on_earth ? "has a CRS" : "has no CRS",
+                               is_on_earth ? "degrees (west_deg ...)" : "metres (west_m ...)"));
 }
 
 std::vector<PlanPosition> GridPlan::to_plan(std::span<const GridPosition> positions) const {

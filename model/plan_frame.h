@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/georeference.h"
@@ -33,6 +34,10 @@ class PlanFrame {
   struct Projection;
   std::unique_ptr<Projection> projection_;
 };
+
+/// Refuses a file whose places are of another kind than the model's.
+/// \throws InputError that says how to give the box.
+void require_same_kind(const std::string& name, const Georeference& place, const PlanFrame& frame);
 
 /// Grid positions of a DEM as plan positions, and back.
 class GridPlan {
