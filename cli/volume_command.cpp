@@ -17,6 +17,7 @@
 #include "model/build_model.h"
 #include "model/encode_ply.h"
 #include "model/section_svg.h"
+#include "tiler/painted_glb.h"
 #include "tiler/whole_file.h"
 #include "viewer/server/viewer_files.h"
 
@@ -156,6 +157,10 @@ void print(const ordered_json& json) {
 
 void write_sections(const MaterialVolume& volume, const model::ModelSettings& settings,
                     const std::filesystem::path& out) {
+  std::vector<tiler::GlbPaint> paints;
+  for (std::uint8_t m = 0; m < volume.model().materials.size(); ++m) {
+    paints.push_back({volume.model().materials[m].name, model::material_colour(MaterialId{m})});
+  }
   for (const model::SectionSettings& section : settings.sections) {
     const Plane plane{{section.normal[0], section.normal[1], section.normal[2]}, section.offset_m};
     std::vector<std::array<Eigen::Vector3d, 3>> triangles;
@@ -165,6 +170,8 @@ void write_sections(const MaterialVolume& volume, const model::ModelSettings& se
       materials.push_back(static_cast<std::uint8_t>(triangle.material));
     }
     tiler::write_whole_file(out / (section.name + ".ply"), model::encode_ply(triangles, materials));
+    tiler::write_whole_file(out / (section.name + ".glb"),
+                            tiler::encode_painted_glb(triangles, materials, paints));
     if (section.normal[0] == 0 && section.normal[1] == 0) continue;  // seen from above: no picture
     const double length = volume.mesh().box().size().head<2>().norm();
     const double stretch = std::max(1.0, 0.25 * length / volume.mesh().box().size().z());

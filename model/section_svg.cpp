@@ -99,6 +99,10 @@ void draw_field(const SectionTriangle& triangle, const SectionPicture& picture,
 
 }  // namespace
 
+const char* material_colour(MaterialId material) {
+  return kMaterialColours[index(material) % kMaterialColours.size()];
+}
+
 std::string section_svg(const MaterialVolume& volume, const SectionPicture& picture) {
   const Projection project(volume.mesh().box(), picture);
   std::string svg = fmt::format(
@@ -111,7 +115,7 @@ std::string section_svg(const MaterialVolume& volume, const SectionPicture& pict
       draw_field(triangle, picture, project, svg, kHalvings);
       continue;
     }
-    const char* colour = kMaterialColours[index(triangle.material) % kMaterialColours.size()];
+    const char* colour = material_colour(triangle.material);
     svg += fmt::format("<path d=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\".4\"/>\n",
                        path_of(triangle.points, project), colour, colour);
   }

@@ -17,6 +17,9 @@ struct SectionPicture {
   int width_px = 1600;
 };
 
+/// What a material is painted with, in sRGB: "#rrggbb".
+const char* material_colour(hierarchy::volume::MaterialId material);
+
 /// Draws a cross-section as SVG: z upward, the plane's horizontal direction to the right.
 /// \pre the plane is not horizontal.
 std::string section_svg(const hierarchy::volume::MaterialVolume& volume,

@@ -1,11 +1,11 @@
 #include "tiler/write_glb.h"
 
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "tiler/draco_mesh.h"
 #include "tiler/glb_arrays.h"
 #include "tiler/glb_buffers.h"
+#include "tiler/pack_glb.h"
 
 namespace terrane::tiler {
 namespace {
@@ -70,7 +70,7 @@ class Document {
     json["accessors"] = buffers_.accessors();
     json["bufferViews"] = buffers_.views();
     json["buffers"] = buffers_.buffers();
-    return pack(json.dump());
+    return pack_glb(json.dump(), buffers_.bytes());
   }
 
  private:
@@ -154,26 +154,6 @@ class Document {
     if (format_.material == Material::kUnlit) used.push_back("KHR_materials_unlit");
     if (!used.empty()) json["extensionsUsed"] = used;
     if (!required.empty()) json["extensionsRequired"] = required;
-  }
-
-  std::string pack(std::string json) const {
-    json.resize((json.size() + 3) / 4 * 4, ' ');
-    const std::string& binary = buffers_.bytes();
-    std::string glb = "glTF";
-    append_word(glb, 2);
-    append_word(glb, 12 + 8 + json.size() + 8 + binary.size());
-    append_word(glb, json.size());
-    glb += "JSON" + json;
-    append_word(glb, binary.size());
-    glb += std::string("BIN\0", 4) + binary;
-    return glb;
-  }
-
-  static void append_word(std::string& bytes, std::size_t value) {
-    const auto word = static_cast<std::uint32_t>(value);
-    char raw[4];
-    std::memcpy(raw, &word, 4);
-    bytes.append(raw, 4);
   }
 
   const GlbTile& tile_;

@@ -6,6 +6,7 @@ Needs Debian's python3-meshio and its numpy: run with /usr/bin/python3.
 
 import json
 import pathlib
+import struct
 import sys
 import tempfile
 import unittest
@@ -130,6 +131,37 @@ def read_ply(file):
     return at[listed["corners"]], listed["material"]
 
 
+def read_glb(file):
+    """Of each material its name and the corners of its triangles, east, north and up."""
+    data = file.read_bytes()
+    magic, version, size, json_size, kind = struct.unpack("<4sIII4s", data[:20])
+    assert (magic, version, size, kind) == (b"glTF", 2, len(data), b"JSON")
+    told = json.loads(data[20:20 + json_size])
+    binary = data[28 + json_size:]
+    assert told["buffers"] == [{"byteLength": len(binary)}]
+
+    def array(number, width):
+        accessor = told["accessors"][number]
+        view = told["bufferViews"][accessor["bufferView"]]
+        kind = {5123: "<u2", 5125: "<u4", 5126: "<f4"}[accessor["componentType"]]
+        return np.frombuffer(binary, kind, accessor["count"] * width,
+                             view.get("byteOffset", 0)).reshape(-1, width)
+    x, y, z = told["nodes"][0]["translation"]
+    for primitive in told["meshes"][0]["primitives"]:
+        position = primitive["attributes"]["POSITION"]
+        at = array(position, 3)
+        np.testing.assert_array_equal(told["accessors"][position]["min"], at.min(axis=0))
+        np.testing.assert_array_equal(told["accessors"][position]["max"], at.max(axis=0))
+        world = np.stack([at[:, 0] + x, -(at[:, 2] + z), at[:, 1] + y], axis=1)
+        yield (told["materials"][primitive["material"]]["name"],
+               world[array(primitive["indices"], 1).reshape(-1, 3)])
+
+
+def areas_of(corners):
+    return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
+                          axis=1) / 2
+
+
 class Volume(VolumeCase):
     def test_another_reader_finds_cells_that_fill_the_box(self):
         out, told, _ = self.build(BOX, GROUND, LAKE, MATERIALS)
@@ -203,12 +235,26 @@ class Volume(VolumeCase):
         section = '[[section]]\nname = "cut"\nnormal = [0, 1, 0]\noffset_m = -250.5\n'
         out, _, _ = self.build(BOX, GROUND, LAKE, MATERIALS, section)
         corners, material = read_ply(out / "cut.ply")
-        areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0],
-                                        corners[:, 2] - corners[:, 0]), axis=1) / 2
+        areas = areas_of(corners)
         self.assertAlmostEqual(areas.sum(), 400 * 200, delta=1)
         # 200 m of water less 40 m of island, 20 m deep; walls within the tolerance
         self.assertAlmostEqual(areas[material == 1].sum(), 160 * 20, delta=4 * 5 * 20)
         self.assertTrue((out / "cut.svg").read_text().startswith("<svg"))
+        shown = dict(read_glb(out / "cut.glb"))
+        self.assertEqual(list(shown), ["rock", "water", "air"])
+        for number, name in enumerate(shown):
+            self.assertAlmostEqual(areas_of(shown[name]).sum(), areas[material == number].sum(),
+                                   delta=0.1)
+            np.testing.assert_allclose(shown[name][:, :, 1], -250.5, atol=1e-3)
+        top = shown["water"][:, :, 2]
+        self.assertTrue((top > 95 - 1e-3).all() and (top < 125).all())
+
+    def test_a_section_beside_the_box_is_empty(self):
+        section = '[[section]]\nname = "cut"\nnormal = [0, 1, 0]\noffset_m = 900\n'
+        out, _, _ = self.build(BOX, GROUND, LAKE, MATERIALS, section)
+        data = (out / "cut.glb").read_bytes()
+        self.assertEqual(len(data), struct.unpack("<I", data[8:12])[0])
+        self.assertNotIn("meshes", json.loads(data[20:]))
 
     def test_the_same_input_gives_the_same_bytes(self):
         out, _, _ = self.build(BOX, GROUND, LAKE, MATERIALS)
