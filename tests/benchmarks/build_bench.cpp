@@ -88,14 +88,14 @@ void BM_BuildParent(benchmark::State& state) {
   const Dem dem;
   std::vector<tiler::TileMesh> children;
   std::int64_t triangles = 0;
-  for (const tiler::TileId& child : dem.pyramid.children(kLeaf.parent())) {
+  for (const tiler::TileId& child : dem.pyramid.children(dem.pyramid.parent(kLeaf))) {
     children.push_back(
         tiler::build_leaf(dem.tiles, child, leaf_seams(dem, child), kTolerance_m).mesh);
     triangles += static_cast<std::int64_t>(children.back().triangles.size());
   }
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        tiler::build_parent(dem.tiles, kLeaf.parent(), children, {}, 2 * kTolerance_m));
+        tiler::build_parent(dem.tiles, dem.pyramid.parent(kLeaf), children, {}, 2 * kTolerance_m));
   }
   state.SetItemsProcessed(state.iterations() * triangles);
   state.SetLabel("input triangles");
@@ -108,7 +108,14 @@ void BM_EncodeTile(benchmark::State& state) {
       tiler::build_leaf(dem.tiles, kLeaf, leaf_seams(dem, kLeaf), kTolerance_m).mesh;
   std::size_t bytes = 0;
   for (auto _ : state) {
-    bytes = tiler::encode_glb(kLeaf, mesh, mesh.points, dem.lattice.step_m(0), false).size();
+    bytes = tiler::encode_glb({.id = kLeaf,
+                               .mesh = mesh,
+                               .targets = mesh.points,
+                               .step_m = dem.lattice.step_m(0),
+                               .tolerance_m = kTolerance_m,
+                               .heights = dem.statistics},
+                              {})
+                .size();
     benchmark::DoNotOptimize(bytes);
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(mesh.triangles.size()));
