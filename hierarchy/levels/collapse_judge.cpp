@@ -30,8 +30,9 @@ std::optional<TriangleFrame> CollapseJudge::frame(TriangleId t) const {
 }
 
 void CollapseJudge::add_ancestors(VertexId v, const TriangleFrame& frame) {
-  level_.ancestors.for_each(
-      v, [&](std::uint32_t i) { fitter_.add(frame.to_local(level_.originals[i])); });
+  level_.ancestors.for_each(v, [&](const Eigen::Vector3i& p) {
+    fitter_.add(frame.to_local(level_.lattice.relative(p)));
+  });
 }
 
 /// Adds the vertices next to the outermost ring; false if there are none.

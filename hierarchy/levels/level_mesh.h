@@ -14,7 +14,10 @@ namespace terrane::hierarchy {
 struct LevelMesh {
   explicit LevelMesh(const SurfaceMesh& finest);
 
-  const Eigen::Vector3d& point(VertexId v) const { return points[index(v)]; }
+  /// Lets go of what is dead, see HalfedgeMesh::compact().
+  Survivors compact();
+
+  Eigen::Vector3d point(VertexId v) const { return lattice.relative(points[index(v)]); }
   /// Twice the area of a triangle in plan, positive if it faces the way all do; exact.
   double plan_area(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                    const Eigen::Vector3d& c) const {
@@ -23,9 +26,9 @@ struct LevelMesh {
 
   HalfedgeMesh mesh;
   PointLattice lattice;
-  std::vector<Eigen::Vector3d> points;     ///< of live vertices; on the lattice, from its origin
-  std::vector<Eigen::Vector3d> originals;  ///< M_0
+  std::vector<Eigen::Vector3i> points;  ///< of live vertices, in lattice steps
   AncestralPoints ancestors;
+  std::vector<std::uint32_t> names;     ///< the number that a vertex had in M_0; they ascend
   std::vector<std::uint8_t> on_border;  ///< is the vertex on a boundary loop?
   double plan_sign = 0;                 ///< +1 or -1 for a height field, seen from above or below
 };

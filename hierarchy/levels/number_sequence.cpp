@@ -1,5 +1,7 @@
 #include "hierarchy/levels/number_sequence.h"
 
+#include <utility>
+
 namespace terrane::hierarchy {
 namespace {
 
@@ -7,25 +9,26 @@ constexpr std::uint32_t kUnnumbered = ~std::uint32_t{0};
 
 }  // namespace
 
-LevelSequence number_sequence(const LevelMesh& level,
-                              const std::vector<std::vector<Collapse>>& records) {
+LevelSequence number_sequence(const LevelMesh& level, std::vector<std::vector<Collapse>> records,
+                              std::uint32_t finest_vertex_count) {
   LevelSequence sequence{.lattice = level.lattice};
-  std::vector<std::uint32_t> number(level.mesh.vertex_count(), kUnnumbered);
+  std::vector<std::uint32_t> number(finest_vertex_count, kUnnumbered);
   sequence.coarsest_triangles = level.mesh.triangles();
   for (const Corners& corners : sequence.coarsest_triangles) {
-    for (const std::uint32_t v : corners) number[v] = 0;
+    for (const std::uint32_t v : corners) number[level.names[v]] = 0;
   }
   std::uint32_t next = 0;
-  for (std::uint32_t v = 0; v < number.size(); ++v) {
-    if (number[v] == kUnnumbered) continue;
-    number[v] = next++;
-    sequence.coarsest_points.push_back(level.lattice.steps(level.points[v]));
+  for (std::uint32_t v = 0; v < level.names.size(); ++v) {
+    std::uint32_t& own = number[level.names[v]];
+    if (own == kUnnumbered) continue;
+    own = next++;
+    sequence.coarsest_points.push_back(level.points[v]);
   }
   for (Corners& corners : sequence.coarsest_triangles) {
-    for (std::uint32_t& v : corners) v = number[v];
+    for (std::uint32_t& v : corners) v = number[level.names[v]];
   }
 
-  sequence.levels = records;
+  sequence.levels = std::move(records);
   for (auto collapses = sequence.levels.rbegin(); collapses != sequence.levels.rend();
        ++collapses) {
     for (const Collapse& collapse : *collapses) {

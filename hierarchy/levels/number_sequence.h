@@ -10,10 +10,11 @@ namespace terrane::hierarchy {
 /// Makes the sequence of a mesh and the collapses that led to it.
 ///
 /// \param level    M_n
-/// \param records  records[i] leads from M_i to M_(i+1); vertices by their number in \p level.
+/// \param records  records[i] leads from M_i to M_(i+1); vertices by their LevelMesh::names.
+/// \param finest_vertex_count  names are smaller.
 /// \return the same with the numbers of a LevelSequence.
-LevelSequence number_sequence(const LevelMesh& level,
-                              const std::vector<std::vector<Collapse>>& records);
+LevelSequence number_sequence(const LevelMesh& level, std::vector<std::vector<Collapse>> records,
+                              std::uint32_t finest_vertex_count);
 
 /// Takes the last level back: M_(n-1) becomes the coarsest mesh.
 /// \pre there is a level.

@@ -238,6 +238,45 @@ void HalfedgeMesh::flip(HalfedgeId h) {
   ++valence_[d];
 }
 
+Survivors HalfedgeMesh::compact() {
+  Survivors old;
+  IdVector<VertexId, VertexId> new_vertex(outgoing_.size());
+  IdVector<TriangleId, std::uint32_t> new_triangle(triangle_count());
+  for (std::uint32_t i = 0; i < outgoing_.size(); ++i) {
+    const VertexId v{i};
+    if (!is_ghost(v) && outgoing_[v] == kNoHalfedge) continue;
+    new_vertex[v] = VertexId{static_cast<std::uint32_t>(old.vertices.size())};
+    old.vertices.push_back(v);
+  }
+  for (std::uint32_t i = 0; i < triangle_count(); ++i) {
+    if (!is_live(TriangleId{i})) continue;
+    new_triangle[TriangleId{i}] = static_cast<std::uint32_t>(old.triangles.size());
+    old.triangles.push_back(TriangleId{i});
+  }
+  const auto renumbered = [&](HalfedgeId h) {
+    return h == kNoHalfedge
+               ? h
+               : halfedge(TriangleId{new_triangle[triangle(h)]}, static_cast<std::uint32_t>(h) % 3);
+  };
+  std::uint32_t end = 0;
+  for (const TriangleId t : old.triangles) {
+    for (std::uint32_t k = 0; k < 3; ++k, ++end) {
+      start_[HalfedgeId{end}] = new_vertex[start_[halfedge(t, k)]];
+      opposite_[HalfedgeId{end}] = renumbered(opposite_[halfedge(t, k)]);
+    }
+  }
+  start_.resize(end);
+  opposite_.resize(end);
+  live_.keep(old.triangles);
+  outgoing_.keep(old.vertices);
+  for (HalfedgeId& h : outgoing_) h = renumbered(h);
+  valence_.keep(old.vertices);
+  origin_.keep(old.vertices);
+  const auto first_ghost = std::ranges::lower_bound(old.vertices, VertexId{vertex_count_});
+  vertex_count_ = static_cast<std::uint32_t>(first_ghost - old.vertices.begin());
+  return old;
+}
+
 std::vector<Corners> HalfedgeMesh::triangles() const {
   std::vector<Corners> result;
   result.reserve(live_triangles_);

@@ -12,6 +12,12 @@ namespace terrane::hierarchy {
 /// Corners of a triangle, counter-clockwise.
 using Corners = std::array<std::uint32_t, 3>;
 
+/// What HalfedgeMesh::compact() leaves: the old id of each new one, ascending.
+struct Survivors {
+  std::vector<VertexId> vertices;  ///< ghosts included, last
+  std::vector<TriangleId> triangles;
+};
+
 /// Half-edges of an orientable triangle mesh in flat arrays, made for collapses.
 ///
 /// Every edge has two triangles: along a boundary loop stand *ghost triangles* that join each
@@ -85,6 +91,10 @@ class HalfedgeMesh {
   /// to apex(h) and keeps the id h.
   /// \pre neither triangle is a ghost, and the two apexes are not joined already.
   void flip(HalfedgeId h);
+
+  /// Lets go of dead triangles and vertices, and numbers the others anew in the order they had, so
+  /// that neighbours lie close in memory again. Walks about a vertex begin where they did.
+  Survivors compact();
 
   /// Live triangles without ghosts, in memory order.
   std::vector<Corners> triangles() const;

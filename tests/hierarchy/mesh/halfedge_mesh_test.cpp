@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <algorithm>
+#include <map>
 #include <random>
 #include <set>
 
@@ -157,6 +159,61 @@ TEST_P(RandomCollapses, KeepTheMeshManifoldAndItsEulerCharacteristic) {
     }
   }
   EXPECT_GT(collapses, 3);
+}
+
+using Neighbourhood = std::vector<std::uint32_t>;
+
+/// Vertices about each live one, in the order of the walk, by the names given; ghosts by no name.
+std::map<std::uint32_t, Neighbourhood> neighbourhoods(const HalfedgeMesh& mesh,
+                                                      const std::vector<VertexId>& names) {
+  std::map<std::uint32_t, Neighbourhood> result;
+  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
+    const HalfedgeId first = mesh.outgoing(VertexId{v});
+    if (first == kNoHalfedge) continue;
+    Neighbourhood& around = result[static_cast<std::uint32_t>(names[v])];
+    HalfedgeId h = first;
+    do {
+      const VertexId end = mesh.end(h);
+      around.push_back(mesh.is_ghost(end) ? 0 : 1 + static_cast<std::uint32_t>(names[index(end)]));
+      h = mesh.rotate(h);
+    } while (h != first);
+    EXPECT_EQ(mesh.valence(VertexId{v}), around.size());
+  }
+  return result;
+}
+
+TEST_P(RandomCollapses, ThenCompactingKeepsEveryNeighbourhoodAndItsOrder) {
+  std::mt19937 random(GetParam());
+  HalfedgeMesh mesh(41, ring());
+  StencilWalker walker(mesh);
+  Stencil stencil;
+  const auto collapse_some = [&](int tries) {
+    for (int i = 0; i < tries; ++i) {
+      const TriangleId t{static_cast<std::uint32_t>(random() % mesh.triangle_count())};
+      if (!mesh.is_live(t) || mesh.is_ghost(t)) continue;
+      if (walker.around_triangle(t, stencil) != Collapsibility::kYes) continue;
+      mesh.collapse(stencil.spokes, stencil.dying_span(), stencil.core[0]);
+    }
+  };
+  collapse_some(60);
+  std::vector<VertexId> same;
+  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) same.push_back(VertexId{v});
+  const auto before = neighbourhoods(mesh, same);
+  const std::uint32_t live = mesh.live_triangle_count();
+
+  const Survivors survivors = mesh.compact();
+
+  EXPECT_EQ(mesh.vertex_count(), before.size());
+  EXPECT_EQ(mesh.live_triangle_count(), live);
+  EXPECT_EQ(mesh.triangle_count(), survivors.triangles.size());
+  EXPECT_TRUE(std::ranges::is_sorted(survivors.triangles));
+  EXPECT_EQ(neighbourhoods(mesh, survivors.vertices), before);
+  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t)
+    EXPECT_TRUE(mesh.is_live(TriangleId{t}));
+
+  collapse_some(60);
+  EXPECT_TRUE(Oracle(mesh.triangles()).is_manifold);
+  EXPECT_EQ(Oracle(mesh.triangles()).euler, 0);
 }
 
 TEST(HalfedgeMesh, FlipReplacesADiagonalAndFlippingBackRestoresIt) {
