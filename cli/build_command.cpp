@@ -26,7 +26,7 @@ struct BuildCommand {
   std::filesystem::path out;
   std::string config;
   bool force = false;
-  std::optional<int> tile_cells, levels_per_octave, jobs;
+  std::optional<int> tile_cells, levels_per_octave, effort, jobs;
   std::optional<double> tolerance_m;
   GeodeticOptionsGiven geodetic;
 };
@@ -40,6 +40,7 @@ void override_with(const std::optional<From>& given, To& setting) {
 void refuse_native_options(const BuildCommand& command, const BuildSettings& settings) {
   const char* const useless = command.tile_cells               ? "--tile-cells"
                               : command.levels_per_octave      ? "--levels-per-octave"
+                              : command.effort                 ? "--effort"
                               : !settings.drape.images.empty() ? "--texture"
                                                                : nullptr;
   if (useless == nullptr) return;
@@ -55,6 +56,7 @@ BuildSettings resolve(const BuildCommand& command) {
   override_with(command.tolerance_m, settings.build.tolerance_m);
   override_with(command.tile_cells, settings.build.tile_cells);
   override_with(command.levels_per_octave, settings.build.levels_per_octave);
+  override_with(command.effort, settings.build.effort);
   override_with(command.jobs, settings.build.jobs);
   apply(command.tiles, settings.build.format);
   apply(command.tiles, settings.drape);
@@ -123,6 +125,9 @@ void add_build_command(CLI::App& app, const CommonOptions& common) {
   build->add_option(
       "--levels-per-octave", command->levels_per_octave,
       "Levels in each doubling of the tolerance, 1 to 4: finer steps between them [1]");
+  build->add_option("--effort", command->effort,
+                    "0 to 3: more time for fewer triangles of the finest level within the same "
+                    "tolerance [1]");
   add_geodetic_options(*build, command->geodetic);
   build->add_option("--jobs", command->jobs, "Threads; 0: one per core [0]");
   add_tile_options(*build, command->tiles);

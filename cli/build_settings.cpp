@@ -90,6 +90,8 @@ const std::map<std::string, Reader>& readers() {
        [](const Setting& s, BuildSettings& to) { to.build.tile_cells = s.whole_number(); }},
       {"build.levels_per_octave",
        [](const Setting& s, BuildSettings& to) { to.build.levels_per_octave = s.whole_number(); }},
+      {"build.effort",
+       [](const Setting& s, BuildSettings& to) { to.build.effort = s.whole_number(); }},
       {"build.scheme", [](const Setting& s, BuildSettings& to) { to.geodetic.scheme = s.text(); }},
       {"build.format", [](const Setting& s, BuildSettings& to) { to.geodetic.format = s.text(); }},
       {"geodetic.geoid", [](const Setting& s, BuildSettings& to) { to.geodetic.geoid = s.text(); }},
@@ -200,9 +202,10 @@ std::string to_toml(const BuildSettings& settings) {
     text += "vertical_unit = " + quoted(std::string(name_of(*ingest.vertical_unit))) + "\n";
   }
   if (!ingest.crs.empty()) text += "crs = " + quoted(ingest.crs) + "\n";
-  text += fmt::format("\n[build]\ntolerance_m = {}\ntile_cells = {}\nlevels_per_octave = {}\n",
-                      settings.build.tolerance_m, settings.build.tile_cells,
-                      settings.build.levels_per_octave);
+  text += fmt::format(
+      "\n[build]\ntolerance_m = {}\ntile_cells = {}\nlevels_per_octave = {}\neffort = {}\n",
+      settings.build.tolerance_m, settings.build.tile_cells, settings.build.levels_per_octave,
+      settings.build.effort);
   if (settings.geodetic.is_geodetic()) {
     text += "scheme = " + quoted(settings.geodetic.scheme) +
             "\nformat = " + quoted(settings.geodetic.format) + "\n";

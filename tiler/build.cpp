@@ -28,9 +28,9 @@ std::string hash_hex(std::string_view text) {
 }
 
 std::string build_key(const BuildOptions& options, const HeightStatistics& statistics) {
-  return hash_hex(fmt::format("{} {} {} {} {} {} {}", TERRANE_GENERATOR, options.tolerance_m,
-                              options.tile_cells, options.levels_per_octave, statistics.fingerprint,
-                              key_of(options.format),
+  return hash_hex(fmt::format("{} {} {} {} {} {} {} {}", TERRANE_GENERATOR, options.tolerance_m,
+                              options.tile_cells, options.levels_per_octave, options.effort,
+                              statistics.fingerprint, key_of(options.format),
                               options.texture ? options.texture->fingerprint() : ""));
 }
 
@@ -71,7 +71,7 @@ class Build {
       : pyramid_(heights.shape(), options.tile_cells, options.levels_per_octave),
         world_(place, heights.shape()),
         lattice_(pyramid_, world_, statistics, options.tolerance_m),
-        source_{heights, world_, pyramid_, lattice_},
+        source_{heights, world_, pyramid_, lattice_, options.effort},
         is_mirrored_(is_mirrored(world_, heights.shape())),
         folder_(out),
         progress_(progress),
@@ -298,6 +298,10 @@ void check(const BuildOptions& options) {
   if (options.levels_per_octave < 1 || options.levels_per_octave > 4) {
     throw ConfigError(
         fmt::format("--levels-per-octave {}: must be from 1 to 4", options.levels_per_octave));
+  }
+  if (options.effort < 0 || options.effort > hierarchy::kTopEffort) {
+    throw ConfigError(
+        fmt::format("--effort {}: must be from 0 to {}", options.effort, hierarchy::kTopEffort));
   }
   check(options.format);
   if (options.format.is_implicit && options.levels_per_octave > 1) {

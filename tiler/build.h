@@ -8,6 +8,7 @@
 #include "core/height_statistics.h"
 #include "core/progress.h"
 #include "core/texture_source.h"
+#include "hierarchy/collapse/strict_collapse.h"
 #include "tiler/tile_format.h"
 
 namespace terrane::tiler {
@@ -19,6 +20,8 @@ struct BuildOptions {
   int tile_cells = 64;
   /// Levels in each doubling of the tolerance, 1 to 4: that many have the same tiles.
   int levels_per_octave = 1;
+  /// Time for fewer triangles of level 0, 0 to 3; see hierarchy::StrictOptions::effort.
+  int effort = hierarchy::kDefaultEffort;
   /// Threads; 0: as many as the machine has cores. Does not change the output.
   int jobs = 0;
   TileFormat format;

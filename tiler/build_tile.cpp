@@ -104,7 +104,7 @@ class TileBuild {
       const TerrainMesh& input, const FinerLevel& finer,
       const std::vector<LatticePoint>& finer_points, double tolerance_m) {
     // the grid frame's straight lines are not quite the world's: 0.1 % saves most second tries
-    StrictOptions options{.tolerance_m = 0.999 * tolerance_m};
+    StrictOptions options{.tolerance_m = 0.999 * tolerance_m, .effort = source_.effort};
     options.smallest_altitude_cells =
         source_.lattice.smallest_altitude_steps() * step_m() / frame_.spacing_m();
 

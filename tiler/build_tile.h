@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/height_source.h"
+#include "hierarchy/collapse/strict_collapse.h"
 #include "tiler/lattice.h"
 #include "tiler/pyramid.h"
 #include "tiler/seam.h"
@@ -17,6 +18,8 @@ struct TileSource {
   const WorldFrame& world;
   const Pyramid& pyramid;
   const Lattice& lattice;
+  /// Of level 0 alone; see hierarchy::StrictOptions::effort.
+  int effort = hierarchy::kDefaultEffort;
 };
 
 /// A tile and where the vertices of its children end in it.

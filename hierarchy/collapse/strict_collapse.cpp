@@ -22,8 +22,11 @@ constexpr std::uint32_t kBlock = 8192;
 // by effort
 constexpr int kPolishRounds[] = {0, 0, 3, 40};
 
-// how far vertices try to go to each neighbour, round by round: 1/4, 1/2, 1/8 of the way
-constexpr std::int32_t kPartsOfWay[] = {4, 2, 8};
+// how far vertices try to go to each neighbour, round by round: 1/4, 1/2, 1/8, 1/16 of the way
+constexpr std::int32_t kPartsOfWay[] = {4, 2, 8, 16};
+
+// how far from an edge's midpoint polish looks for more places: 1/4 of the way to each neighbour
+constexpr std::int32_t kPartsBesideEdge = 4;
 
 // a sweep that collapses less than one in this many triangles is the last
 constexpr std::int64_t kTooFew = 500;
@@ -31,6 +34,11 @@ constexpr std::int64_t kTooFew = 500;
 double squared_length(GridPoint a, GridPoint b) {
   const double x = static_cast<double>(b.x) - a.x, y = static_cast<double>(b.y) - a.y;
   return x * x + y * y;
+}
+
+/// 1 / \p parts of the way, rounded to the lattice.
+GridPoint part_of_way(GridPoint from, GridPoint to, std::int32_t parts) {
+  return {from.x + (to.x - from.x) / parts, from.y + (to.y - from.y) / parts};
 }
 
 /// A place worth trying for the new vertex.
@@ -99,6 +107,7 @@ class StrictCollapse {
 
   /// Makes room under the tolerance and collapses what it then allows, again and again.
   void polish(int rounds) {
+    is_polishing_ = true;
     int idle_rounds = 0;
     for (int round = 0; round < rounds && idle_rounds < std::ssize(kPartsOfWay); ++round) {
       for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) flip_edges(TriangleId{t});
@@ -137,9 +146,7 @@ class StrictCollapse {
     candidates_.push_back({here.plan, here.height_m});
     for (const VertexId to : stencil_.polygon) {
       const GridPoint there = vertices_[index(to)].place.plan;
-      candidates_.push_back({{here.plan.x + (there.x - here.plan.x) / parts_of_way,
-                              here.plan.y + (there.y - here.plan.y) / parts_of_way},
-                             here.height_m});
+      candidates_.push_back({part_of_way(here.plan, there, parts_of_way), here.height_m});
     }
     const std::optional<Place> place = best_candidate();
     if (!place || place->lattice == here.lattice) return;
@@ -246,6 +253,21 @@ class StrictCollapse {
     const std::int64_t n = stencil_.core_size;
     candidates_.push_back({{static_cast<std::int32_t>(x / n), static_cast<std::int32_t>(y / n)},
                            height_m / static_cast<double>(n)});
+    if (is_polishing_) list_more_candidates(candidates_.back());
+  }
+
+  /// The quarter points of an edge, and places around its midpoint.
+  void list_more_candidates(Candidate midpoint) {
+    for (std::size_t end = 0; end < 2; ++end) {
+      const Candidate there = candidates_[end];
+      candidates_.push_back(
+          {part_of_way(midpoint.plan, there.plan, 2), (midpoint.height_m + there.height_m) / 2});
+    }
+    for (const VertexId to : stencil_.polygon) {
+      const GridPoint there = vertices_[index(to)].place.plan;
+      candidates_.push_back(
+          {part_of_way(midpoint.plan, there, kPartsBesideEdge), midpoint.height_m});
+    }
   }
 
   /// Where the core may go; refusal_ says why if nowhere.
@@ -403,6 +425,7 @@ class StrictCollapse {
   std::vector<VertexId> parent_;  // level 0 only: where a vertex went, to be followed
 
   double tolerance_m_ = 0;  // of this sweep
+  bool is_polishing_ = false;
   std::uint32_t sweep_ = 0;
   std::vector<std::uint32_t> changed_;  // sweep that last changed the surroundings of a vertex
   std::vector<std::uint32_t> tested_;   // sweep that last tried a triangle, later a half-edge

@@ -74,6 +74,9 @@ class BadInput(unittest.TestCase):
     def test_negative_tolerance(self):
         self.refuse([self.good, "--tolerance", "-1"], USAGE, "--tolerance")
 
+    def test_an_effort_above_the_top(self):
+        self.refuse([self.good, "--effort", "4"], USAGE, "--effort 4", "0 to 3")
+
     def test_formats_that_do_not_exist(self):
         self.refuse([self.good, "--compression", "zip"], USAGE, "--compression zip", "meshopt")
         self.refuse([self.good, "--skirts", "-3"], USAGE, "--skirts -3", "auto")

@@ -49,7 +49,7 @@ class SameBytes(unittest.TestCase):
             self.assertGreater(kills, 0)
 
     def test_of_a_build_from_the_settings_that_were_written(self):
-        first = self.build("first")
+        first = self.build("first", "--effort", "2")
         status, _, said = terrane("--quiet", "build", "--config",
                                   self.folder / "first" / "build.toml", "-o",
                                   self.folder / "again")

@@ -53,6 +53,28 @@ TEST(Build, FindsAFinishedOutputUpToDateAndAChangedSettingNot) {
   EXPECT_TRUE(build_hills(folder.path(), {.tolerance_m = 2, .tile_cells = 16}).was_up_to_date);
   EXPECT_FALSE(build_hills(folder.path(), {.tolerance_m = 3, .tile_cells = 16}).was_up_to_date);
   EXPECT_TRUE(build_hills(folder.path(), {.tolerance_m = 3, .tile_cells = 16}).was_up_to_date);
+  const BuildOptions patient{.tolerance_m = 3, .tile_cells = 16, .effort = 3};
+  EXPECT_FALSE(build_hills(folder.path(), patient).was_up_to_date);
+  EXPECT_TRUE(build_hills(folder.path(), patient).was_up_to_date);
+}
+
+TEST(Build, EachEffortHoldsAndNeedsFewerTrianglesThanTheOneBefore) {
+  const FunctionDem dem({130, 130}, hills);
+  std::int64_t triangles = 130 * 130 * 2;
+  for (const int effort : {0, 1, 2, 3}) {
+    const auto report =
+        verdict(dem, PlainPlace(), {.tolerance_m = 2, .tile_cells = 32, .effort = effort});
+    EXPECT_TRUE(report.holds()) << "effort " << effort << "\n" << to_text(report);
+    EXPECT_LT(report.levels[0].triangles, triangles) << "effort " << effort;
+    triangles = report.levels[0].triangles;
+  }
+}
+
+TEST(Build, WritesTheSameBytesWithAnyNumberOfThreadsAtTopEffort) {
+  const TemporaryFolder one, two;
+  build_hills(one.path(), {.tolerance_m = 2, .tile_cells = 16, .effort = 3, .jobs = 1});
+  build_hills(two.path(), {.tolerance_m = 2, .tile_cells = 16, .effort = 3, .jobs = 2});
+  EXPECT_EQ(bytes_below(one.path()), bytes_below(two.path()));
 }
 
 TEST(Build, TidiesUpAfterOneThatWasKilledWhileItTidiedUp) {
@@ -123,6 +145,8 @@ TEST(Build, RefusesSettingsOutOfRange) {
   EXPECT_THROW(check({.tile_cells = 2}), ConfigError);
   EXPECT_THROW(check({.levels_per_octave = 0}), ConfigError);
   EXPECT_THROW(check({.levels_per_octave = 5}), ConfigError);
+  EXPECT_THROW(check({.effort = -1}), ConfigError);
+  EXPECT_THROW(check({.effort = 4}), ConfigError);
   EXPECT_THROW(check({.jobs = -1}), ConfigError);
 }
 
@@ -212,7 +236,8 @@ TEST_P(RandomDem, HoldsEveryInvariantAtEveryLevel) {
   });
   const BuildOptions options{.tolerance_m = uniform(1, 8),
                              .tile_cells = 8,
-                             .levels_per_octave = 1 + static_cast<int>(GetParam() % 4)};
+                             .levels_per_octave = 1 + static_cast<int>(GetParam() % 4),
+                             .effort = static_cast<int>(GetParam() / 4 % 4)};
 
   const PlainPlace south_up(7, -12);
   EXPECT_TRUE(verdict(dem, south_up, options).holds());
