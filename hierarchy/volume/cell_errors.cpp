@@ -5,6 +5,7 @@
 #include <queue>
 
 #include "hierarchy/volume/material_volume.h"
+#include "hierarchy/volume/piece_distance.h"
 
 namespace terrane::hierarchy::volume {
 namespace {
@@ -152,20 +153,9 @@ double MaterialVolume::strict_error(CellId cell, InterfaceId interface, const Ba
     if (++looked_at >= kTrianglesBeforeAnEarlyVerdict && largest > tolerance) break;
   }
   if (std::isinf(largest)) return std::max(2 * tolerance, longest_edge(corners(cell)));
-  return largest > tolerance ? largest : std::max(largest, reverse_error(cell, interface));
-}
-
-double MaterialVolume::reverse_error(CellId cell, InterfaceId interface) const {
-  const ZeroSet piece = approximation(cell, interface);
-  if (piece.is_empty()) return 0;
-  const InterfaceSurface& surface = *model_.interfaces[index(interface)];
-  Vector3d centre = Vector3d::Zero();
-  double largest = 0;
-  for (int k = 0; k < piece.size; ++k) {
-    largest = std::max(largest, surface.nearest(piece.points[k]).squared_distance);
-    centre += piece.points[k] / piece.size;
-  }
-  return std::sqrt(std::max(largest, surface.nearest(centre).squared_distance));
+  if (largest > tolerance) return largest;
+  // and the way back: no piece strays from the interface
+  return std::max(largest, largest_distance(own, *model_.interfaces[index(interface)], tolerance));
 }
 
 double MaterialVolume::published_error(CellId cell, InterfaceId interface,

@@ -288,8 +288,8 @@ void InterfaceSurface::visit_all(const Overlaps& overlaps, const Visit& visit) c
   }
 }
 
-InterfaceSurface::Found InterfaceSurface::nearest_triangle(const Vector3d& p) const {
-  Found best;
+NearestTriangle InterfaceSurface::nearest_triangle(const Vector3d& p) const {
+  NearestTriangle best;
   best.at.squared_distance = std::numeric_limits<double>::infinity();
   visit_nearest_first(
       [&](const TreeNode& node) { return squared_distance_to_box(p, node.low, node.high); },
@@ -326,7 +326,7 @@ std::uint32_t InterfaceSurface::nearest_vertex(const Vector3d& p) const {
 
 // Baerentzen and Aanaes 2005: the sign is right everywhere if corners weigh the normals around them
 // by angle and edges take both.
-Vector3d InterfaceSurface::normal_at(const Found& nearest) const {
+Vector3d InterfaceSurface::normal_at(const NearestTriangle& nearest) const {
   if (nearest.at.feature < 3) {
     return vertex_normals_[mesh_.triangles[nearest.triangle][nearest.at.feature]];
   }
@@ -361,13 +361,13 @@ std::optional<double> InterfaceSurface::height(double x, double y) const {
   return height;
 }
 
-bool InterfaceSurface::is_under(const Vector3d& p, const Found& nearest) const {
+bool InterfaceSurface::is_under(const Vector3d& p, const NearestTriangle& nearest) const {
   const auto surface = height(p.x(), p.y());
   // beyond its rim, which lies outside the box, the surface goes on level
   return p.z() < surface.value_or(nearest.at.point.z());
 }
 
-bool InterfaceSurface::is_below(const Vector3d& p, const Found& nearest) const {
+bool InterfaceSurface::is_below(const Vector3d& p, const NearestTriangle& nearest) const {
   if (side_ == SideRule::kVertical) return is_under(p, nearest);
   return (p - nearest.at.point).dot(normal_at(nearest)) < 0;
 }
@@ -378,7 +378,7 @@ double InterfaceSurface::signed_distance(const Vector3d& p, DistanceRule rule) c
     const Vector3d away = p - mesh_.points[v];
     return away.dot(vertex_normals_[v]) < 0 ? -away.norm() : away.norm();
   }
-  const Found found = nearest_triangle(p);
+  const NearestTriangle found = nearest_triangle(p);
   const double distance = std::sqrt(found.at.squared_distance);
   return is_below(p, found) ? -distance : distance;
 }

@@ -31,6 +31,13 @@ enum class SideRule {
   kVertical  ///< under or over the surface in plan: surfaces of heights
 };
 
+/// The point of a surface that is nearest to another point, and a triangle that it lies on: of
+/// several the one with the smallest index.
+struct NearestTriangle {
+  ClosestPoint at;
+  std::uint32_t triangle = 0;
+};
+
 /// A triangle mesh that separates materials: negative on one side (*below*: the side that normals
 /// point away from), positive on the other (*above*).
 ///
@@ -52,6 +59,7 @@ class InterfaceSurface {
 
   /// The triangle point nearest to p.
   ClosestPoint nearest(const Eigen::Vector3d& p) const;
+  NearestTriangle nearest_triangle(const Eigen::Vector3d& p) const;
   /// The vertex nearest to p; of several the one with the smallest index.
   std::uint32_t nearest_vertex(const Eigen::Vector3d& p) const;
 
@@ -69,10 +77,6 @@ class InterfaceSurface {
     std::uint32_t begin = 0, end = 0;  ///< triangles order_[begin, end)
     std::uint32_t right = 0;           ///< second child (the first is the next node); 0: a leaf
   };
-  struct Found {
-    ClosestPoint at;
-    std::uint32_t triangle = 0;
-  };
 
   void check_numbers() const;
   void find_neighbours();
@@ -82,10 +86,9 @@ class InterfaceSurface {
   void compute_normals();
   std::uint32_t build_tree(std::uint32_t begin, std::uint32_t end,
                            const std::vector<Eigen::Vector3d>& centres);
-  Found nearest_triangle(const Eigen::Vector3d& p) const;
-  bool is_below(const Eigen::Vector3d& p, const Found& nearest) const;
-  bool is_under(const Eigen::Vector3d& p, const Found& nearest) const;
-  Eigen::Vector3d normal_at(const Found& nearest) const;
+  bool is_below(const Eigen::Vector3d& p, const NearestTriangle& nearest) const;
+  bool is_under(const Eigen::Vector3d& p, const NearestTriangle& nearest) const;
+  Eigen::Vector3d normal_at(const NearestTriangle& nearest) const;
   template <class Distance, class Visit>
   void visit_nearest_first(const Distance& squared_distance, const Visit& visit) const;
   template <class Overlaps, class Visit>

@@ -68,7 +68,8 @@ struct Piece {
 ///
 /// Guarantees after refine(): errors of all leaves are within the tolerances. With
 /// InterfaceErrorRule::kStrict every point of an interface where it parts two materials is within
-/// its error of the approximation; at every place of a material (the true one) its field's
+/// its error of the approximation, and every point of the approximation in a cell within the error
+/// there of the interface; at every place of a material (the true one) its field's
 /// approximation is within the field error of the cell there. The same calls give the same bits.
 ///
 /// \par Source
@@ -166,7 +167,6 @@ class MaterialVolume {
   void drop_triangles_outside(CellId cell, const Barycentric& shape);
   double strict_error(CellId cell, InterfaceId interface, const Barycentric& shape);
   double published_error(CellId cell, InterfaceId interface, const Barycentric& shape) const;
-  double reverse_error(CellId cell, InterfaceId interface) const;
   double deviation(CellId cell, FieldId field) const;
   double distance_around(CellId cell, InterfaceId interface, const Eigen::Vector3d& p,
                          std::vector<ZeroSet>& known);
