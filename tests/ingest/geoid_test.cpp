@@ -7,8 +7,8 @@
 namespace terrane::ingest {
 namespace {
 
-// NIMA's test points for EGM96; its program takes splines through the 15' grid where PROJ is
-// bilinear: they are a few centimetres apart
+// the test points in the readme of EGM96 (NIMA, now NGA); ways to interpolate the 15' grid differ by
+// some centimetres, and PROJ's is bilinear
 TEST(Geoid, Egm96IsWherePublishedValuesAre) {
   const auto geoid = open_geoid("egm96");
   EXPECT_NEAR(geoid->undulation_m({269.7791550, 38.6281550}), -31.628, 0.1);
