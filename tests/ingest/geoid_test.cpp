@@ -7,8 +7,8 @@
 namespace terrane::ingest {
 namespace {
 
-// the test points in the readme of EGM96 (NIMA, now NGA); ways to interpolate the 15' grid differ by
-// some centimetres, and PROJ's is bilinear
+// the test points in the readme of EGM96 (NIMA, now NGA); ways to interpolate the 15' grid differ
+// by some centimetres, and PROJ's is bilinear
 TEST(Geoid, Egm96IsWherePublishedValuesAre) {
   const auto geoid = open_geoid("egm96");
   EXPECT_NEAR(geoid->undulation_m({269.7791550, 38.6281550}), -31.628, 0.1);
