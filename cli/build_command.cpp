@@ -12,8 +12,8 @@
 #include "cli/tile_options.h"
 #include "core/errors.h"
 #include "ingest/scan.h"
-#include "tiler/output_folder.h"
-#include "tiler/whole_file.h"
+#include "tiler/files/output_folder.h"
+#include "tiler/files/whole_file.h"
 #include "viewer/server/viewer_files.h"
 
 namespace terrane::cli {

@@ -9,7 +9,7 @@
 
 #include "cli/tile_options.h"
 #include "core/errors.h"
-#include "tiler/whole_file.h"
+#include "tiler/files/whole_file.h"
 
 namespace terrane::cli {
 namespace {

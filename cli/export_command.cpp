@@ -11,9 +11,9 @@
 #include "cli/terminal_progress.h"
 #include "cli/unpacked_output.h"
 #include "core/errors.h"
-#include "tiler/mesh_file.h"
+#include "tiler/files/mesh_file.h"
+#include "tiler/files/whole_file.h"
 #include "tiler/welded/encode_surface.h"
-#include "tiler/whole_file.h"
 
 namespace terrane::cli {
 namespace {

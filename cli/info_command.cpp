@@ -13,7 +13,7 @@
 #include "cli/terminal_progress.h"
 #include "core/errors.h"
 #include "ingest/scan.h"
-#include "tiler/whole_file.h"
+#include "tiler/files/whole_file.h"
 
 namespace terrane::cli {
 namespace {

@@ -9,8 +9,8 @@
 #include "hierarchy/levels/level_sequence.h"
 #include "hierarchy/levels/levels_file.h"
 #include "hierarchy/levels/write_surface.h"
-#include "tiler/whole_file.h"
-#include "tiler/write_morphing_glb.h"
+#include "tiler/files/whole_file.h"
+#include "tiler/gltf/write_morphing_glb.h"
 
 namespace terrane::cli {
 namespace {

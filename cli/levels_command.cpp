@@ -17,7 +17,7 @@
 #include "hierarchy/levels/level_error.h"
 #include "hierarchy/levels/levels_file.h"
 #include "hierarchy/levels/swap_cycles.h"
-#include "tiler/whole_file.h"
+#include "tiler/files/whole_file.h"
 
 namespace terrane::cli {
 namespace {

@@ -13,7 +13,7 @@
 #include "hierarchy/levels/levels_file.h"
 #include "hierarchy/merge/build_merge_tree.h"
 #include "hierarchy/merge/tree_file.h"
-#include "tiler/whole_file.h"
+#include "tiler/files/whole_file.h"
 
 namespace terrane::cli {
 namespace {

@@ -10,9 +10,9 @@
 #include "cli/terminal_progress.h"
 #include "ingest/features.h"
 #include "ingest/scan.h"
-#include "tiler/mesh_file.h"
+#include "tiler/files/mesh_file.h"
+#include "tiler/files/whole_file.h"
 #include "tiler/simplify.h"
-#include "tiler/whole_file.h"
 
 namespace terrane::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include "hierarchy/levels/grid_surface.h"
 #include "hierarchy/levels/read_surface.h"
 #include "ingest/scan.h"
-#include "tiler/world_frame.h"
+#include "tiler/tile/world_frame.h"
 
 namespace terrane::cli {
 namespace {

@@ -11,8 +11,8 @@
 #include "cli/unpacked_output.h"
 #include "core/errors.h"
 #include "ingest/scan.h"
+#include "tiler/files/whole_file.h"
 #include "tiler/verify/verify.h"
-#include "tiler/whole_file.h"
 
 namespace terrane::cli {
 namespace {

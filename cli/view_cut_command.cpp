@@ -14,8 +14,8 @@
 #include "hierarchy/merge/merge_front.h"
 #include "hierarchy/merge/tree_file.h"
 #include "hierarchy/merge/triangle_budget.h"
-#include "tiler/whole_file.h"
-#include "tiler/write_morphing_glb.h"
+#include "tiler/files/whole_file.h"
+#include "tiler/gltf/write_morphing_glb.h"
 
 namespace terrane::cli {
 namespace {

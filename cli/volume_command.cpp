@@ -17,8 +17,8 @@
 #include "model/build_model.h"
 #include "model/encode_ply.h"
 #include "model/section_svg.h"
-#include "tiler/painted_glb.h"
-#include "tiler/whole_file.h"
+#include "tiler/files/whole_file.h"
+#include "tiler/gltf/painted_glb.h"
 #include "viewer/server/viewer_files.h"
 
 namespace terrane::cli {

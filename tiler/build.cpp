@@ -9,14 +9,14 @@
 #include <thread>
 
 #include "core/errors.h"
-#include "tiler/build_seam.h"
 #include "tiler/build_tile.h"
-#include "tiler/cut_texture.h"
-#include "tiler/output_folder.h"
-#include "tiler/tile_skirt.h"
-#include "tiler/whole_file.h"
-#include "tiler/write_glb.h"
-#include "tiler/write_tileset.h"
+#include "tiler/files/output_folder.h"
+#include "tiler/files/whole_file.h"
+#include "tiler/gltf/cut_texture.h"
+#include "tiler/gltf/tile_skirt.h"
+#include "tiler/gltf/write_glb.h"
+#include "tiler/seams/build_seam.h"
+#include "tiler/tileset/write_tileset.h"
 
 namespace terrane::tiler {
 namespace {

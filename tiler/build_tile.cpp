@@ -8,12 +8,12 @@
 
 #include "core/errors.h"
 #include "hierarchy/collapse/strict_collapse.h"
-#include "tiler/join_tiles.h"
-#include "tiler/measure.h"
-#include "tiler/reference.h"
-#include "tiler/terrain_normals.h"
-#include "tiler/tile_frame.h"
-#include "tiler/tile_samples.h"
+#include "tiler/gltf/terrain_normals.h"
+#include "tiler/seams/join_tiles.h"
+#include "tiler/tile/measure.h"
+#include "tiler/tile/reference.h"
+#include "tiler/tile/tile_frame.h"
+#include "tiler/tile/tile_samples.h"
 
 namespace terrane::tiler {
 namespace {

@@ -4,11 +4,11 @@
 
 #include "core/height_source.h"
 #include "hierarchy/collapse/strict_collapse.h"
-#include "tiler/lattice.h"
 #include "tiler/pyramid.h"
-#include "tiler/seam.h"
-#include "tiler/tile_mesh.h"
-#include "tiler/world_frame.h"
+#include "tiler/seams/seam.h"
+#include "tiler/tile/lattice.h"
+#include "tiler/tile/tile_mesh.h"
+#include "tiler/tile/world_frame.h"
 
 namespace terrane::tiler {
 

@@ -4,7 +4,7 @@
 #include "core/height_source.h"
 #include "core/progress.h"
 #include "hierarchy/collapse/terrain_mesh.h"
-#include "tiler/grid_error.h"
+#include "tiler/tile/grid_error.h"
 
 namespace terrane::tiler {
 

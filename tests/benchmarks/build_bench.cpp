@@ -6,9 +6,9 @@
 
 #include "ingest/scan.h"
 #include "tiler/build.h"
-#include "tiler/build_seam.h"
 #include "tiler/build_tile.h"
-#include "tiler/write_glb.h"
+#include "tiler/gltf/write_glb.h"
+#include "tiler/seams/build_seam.h"
 
 namespace terrane {
 namespace {

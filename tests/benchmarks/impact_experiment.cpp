@@ -10,7 +10,7 @@
 
 #include "model/section_svg.h"
 #include "tests/hierarchy/volume/impact_model.h"
-#include "tiler/whole_file.h"
+#include "tiler/files/whole_file.h"
 
 namespace terrane::hierarchy::volume {
 namespace {

@@ -7,7 +7,7 @@
 #include "ingest/dem.h"
 #include "ingest/scan.h"
 #include "tiler/build.h"
-#include "tiler/output_folder.h"
+#include "tiler/files/output_folder.h"
 #include "tiler/verify/verify.h"
 #include "viewer/server/serve.h"
 #include "viewer/server/viewer_files.h"

@@ -8,7 +8,7 @@
 
 #include "core/errors.h"
 #include "tests/tiler/test_dem.h"
-#include "tiler/output_folder.h"
+#include "tiler/files/output_folder.h"
 #include "tiler/verify/verify.h"
 
 namespace terrane::tiler {

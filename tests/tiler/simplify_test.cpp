@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/errors.h"
-#include "test_dem.h"
+#include "tests/tiler/test_dem.h"
 
 namespace terrane::tiler {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <Eigen/Geometry>
 
-#include "tiler/build_seam.h"
 #include "tiler/build_tile.h"
+#include "tiler/files/output_folder.h"
 #include "tiler/geodetic/grid_lattice.h"
-#include "tiler/output_folder.h"
+#include "tiler/seams/build_seam.h"
 
 namespace terrane::tiler {
 namespace {

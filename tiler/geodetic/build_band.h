@@ -7,7 +7,7 @@
 #include "core/geodetic_grid.h"
 #include "core/progress.h"
 #include "tiler/geodetic/quantized_mesh.h"
-#include "tiler/tile_mesh.h"
+#include "tiler/tile/tile_mesh.h"
 
 namespace terrane::tiler {
 

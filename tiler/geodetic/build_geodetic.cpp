@@ -8,10 +8,10 @@
 #include <thread>
 
 #include "core/errors.h"
+#include "tiler/files/gzip.h"
+#include "tiler/files/whole_file.h"
 #include "tiler/geodetic/build_band.h"
 #include "tiler/geodetic/layer_json.h"
-#include "tiler/gzip.h"
-#include "tiler/whole_file.h"
 
 namespace terrane::tiler {
 namespace {

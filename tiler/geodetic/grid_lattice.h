@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/geodetic_grid.h"
-#include "tiler/lattice.h"
-#include "tiler/world_frame.h"
+#include "tiler/tile/lattice.h"
+#include "tiler/tile/world_frame.h"
 
 namespace terrane::tiler {
 

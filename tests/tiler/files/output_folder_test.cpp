@@ -1,0 +1,59 @@
+#include "tiler/files/output_folder.h"
+
+#include <gtest/gtest.h>
+
+#include "core/errors.h"
+#include "tests/tiler/test_dem.h"
+#include "tiler/files/whole_file.h"
+
+namespace terrane::tiler {
+namespace {
+
+using testing::TemporaryFolder;
+
+TEST(OutputFolder, RefusesAFolderWithFilesOfOthersUnlessForced) {
+  const TemporaryFolder folder;
+  write_whole_file(folder.path() / "thesis.txt", "precious");
+  EXPECT_THROW(OutputFolder(folder.path()).claim(false), OutputError);
+  EXPECT_NO_THROW(OutputFolder(folder.path()).claim(true));
+}
+
+TEST(OutputFolder, RefusesAFile) {
+  const TemporaryFolder folder;
+  write_whole_file(folder.path() / "file", "x");
+  EXPECT_THROW(OutputFolder(folder.path() / "file").claim(true), OutputError);
+}
+
+TEST(OutputFolder, MakesWhatIsMissingAndTakesItsOwnAgain) {
+  const TemporaryFolder folder;
+  const OutputFolder out(folder.path() / "new" / "one");
+  out.claim(false);
+  out.begin("key");
+  EXPECT_NO_THROW(out.claim(false));
+}
+
+TEST(OutputFolder, BeginKeepsWorkOfTheSameKeyAndDropsThatOfAnother) {
+  const TemporaryFolder folder;
+  const OutputFolder out(folder.path());
+  out.begin("one");
+  write_whole_file(out.finished_tile({0, 1, 2}), "work");
+  out.begin("one");
+  EXPECT_TRUE(std::filesystem::exists(out.finished_tile({0, 1, 2})));
+  out.begin("two");
+  EXPECT_FALSE(std::filesystem::exists(out.finished_tile({0, 1, 2})));
+}
+
+TEST(OutputFolder, BeginLeavesFilesOfOthersAlone) {
+  const TemporaryFolder folder;
+  write_whole_file(folder.path() / "thesis.txt", "precious");
+  OutputFolder(folder.path()).begin("key");
+  EXPECT_EQ(read_whole_file(folder.path() / "thesis.txt"), "precious");
+}
+
+TEST(OutputFolder, AnEmptyFolderHoldsNothingFinished) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(OutputFolder(folder.path()).finished_key(), "");
+}
+
+}  // namespace
+}  // namespace terrane::tiler

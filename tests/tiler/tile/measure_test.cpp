@@ -1,0 +1,73 @@
+#include "tiler/tile/measure.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/tiler/test_dem.h"
+
+namespace terrane::tiler {
+namespace {
+
+using hierarchy::kUnitsPerCell;
+using testing::FunctionDem;
+using testing::PlainPlace;
+
+constexpr double kUnit_cells = 1.0 / kUnitsPerCell;
+
+/// 65 x 65 samples at 0 m, 1 km apart, but for the one at column 20, row 20.
+class MeasuredTile : public ::testing::Test {
+ protected:
+  explicit MeasuredTile(double height_m = 0)
+      : dem_({65, 65}, [height_m](std::int64_t column, std::int64_t row) {
+          return column == 20 && row == 20 ? height_m : 0;
+        }) {}
+
+  /// A vertex where it is; in plan it is known to whole units only.
+  WorldVertex vertex(double column, double row, double height_m) const {
+    const GridPosition position{column, row};
+    const Plumb plumb = world_.plumbs({&position, 1}).front();
+    const auto rounded = [](double cells) { return std::round(cells / kUnit_cells) * kUnit_cells; };
+    return {{rounded(column), rounded(row), 0}, plumb.base + height_m * plumb.up};
+  }
+
+  MeasuredError measured(const MeasuredMesh& mesh, double step_m) const {
+    const TileSamples samples(dem_, {0, 0, 65, 65}, 0, 1);
+    return measure({&mesh, 1}, samples, frame_, step_m, 1000).errors.front();
+  }
+
+  const FunctionDem dem_;
+  const PlainPlace place_{1000, 1000};
+  const WorldFrame world_{place_, {65, 65}};
+  const Pyramid pyramid_{{65, 65}, 64};
+  const Lattice lattice_{pyramid_, world_, {1, 0, 10, ""}, 2};
+  const TileFrame frame_{world_, lattice_, {0, 0, 65, 65}, 0};
+};
+
+class TileWithASpike : public MeasuredTile {
+ protected:
+  TileWithASpike() : MeasuredTile(5) {}
+};
+
+TEST_F(TileWithASpike, ItIsMeasuredThoughItsTrianglesRoundedPlanLeavesItOut) {
+  // the edge from a to b passes the spike by 0.07 units in the world, and by -0.33 as rounded
+  const std::vector<hierarchy::Corners> triangles{{0, 1, 2}};
+  const MeasuredMesh mesh{.vertices = {vertex(10, 20 + 0.4 * kUnit_cells, 0),
+                                       vertex(40, 20 - 0.6 * kUnit_cells, 0), vertex(20, 10, 0)},
+                          .triangles = triangles,
+                          .rim = {}};
+  EXPECT_NEAR(measured(mesh, 0.01).max_m, 5, 0.01);
+}
+
+TEST_F(MeasuredTile, SampleBesideTheRimIsMeasuredAgainstItsNearestPoint) {
+  const MeasuredMesh mesh{.vertices = {vertex(10, 20.009, 7), vertex(30, 20.009, 7),
+                                       vertex(10, 20.001, 1), vertex(30, 20.001, 1)},
+                          .triangles = {},
+                          .rim = {{0, 1}, {2, 3}}};
+  const MeasuredError error = measured(mesh, 10);  // 0.01 cells
+  EXPECT_EQ(error.samples, 21);
+  EXPECT_NEAR(error.max_m, 1, 0.01);
+}
+
+}  // namespace
+}  // namespace terrane::tiler

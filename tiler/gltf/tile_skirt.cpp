@@ -1,0 +1,64 @@
+#include "tiler/gltf/tile_skirt.h"
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace terrane::tiler {
+namespace {
+
+using hierarchy::SampleId;
+using Edge = std::array<std::uint32_t, 2>;
+
+/// Edges with a triangle on one side only, that one to their left, in order.
+std::set<Edge> open_edges(const TileMesh& mesh) {
+  std::set<Edge> open;
+  for (const hierarchy::Corners& corners : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t from = corners[k], to = corners[(k + 1) % 3];
+      if (open.erase({to, from}) == 0) open.insert({from, to});
+    }
+  }
+  return open;
+}
+
+/// Do two border samples lie on one line that the tile shares with a neighbour?
+bool is_along_seam(const Pyramid& pyramid, const TileId& tile, const SampleId& a,
+                   const SampleId& b) {
+  if (a.column < 0 || b.column < 0 || (a.column != b.column && a.row != b.row)) return false;
+  return pyramid.is_on_seam(tile, a.column, a.row) && pyramid.is_on_seam(tile, b.column, b.row);
+}
+
+LatticePoint lowered(const LatticePoint& point, const Eigen::Vector3d& steps) {
+  return {point.i + std::llround(steps.x()), point.j + std::llround(steps.y()),
+          point.k + std::llround(steps.z())};
+}
+
+}  // namespace
+
+TileSkirt hang_skirt(const Pyramid& pyramid, const TileId& tile, const TileMesh& mesh,
+                     std::span<const LatticePoint> targets, const Eigen::Vector3d& down_steps) {
+  TileSkirt skirt;
+  std::map<std::uint32_t, std::uint32_t> upper;  // number in the skirt; the hem's is one more
+  const auto number = [&](std::uint32_t v) {
+    const auto [at, is_new] = upper.emplace(v, static_cast<std::uint32_t>(skirt.points.size()));
+    if (is_new) {
+      skirt.above.insert(skirt.above.end(), {v, v});
+      skirt.points.insert(skirt.points.end(),
+                          {mesh.points[v], lowered(mesh.points[v], down_steps)});
+      skirt.targets.insert(skirt.targets.end(), {targets[v], lowered(targets[v], down_steps)});
+    }
+    return at->second;
+  };
+  for (const auto& [from, to] : open_edges(mesh)) {
+    if (!is_along_seam(pyramid, tile, mesh.samples[from], mesh.samples[to])) continue;
+    const std::uint32_t a = number(from), b = number(to);
+    skirt.triangles.push_back({a, a + 1, b + 1});
+    skirt.triangles.push_back({a, b + 1, b});
+  }
+  return skirt;
+}
+
+}  // namespace terrane::tiler

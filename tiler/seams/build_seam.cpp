@@ -1,0 +1,344 @@
+#include "tiler/seams/build_seam.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "hierarchy/collapse/chain_collapse.h"
+#include "tiler/seams/join_tiles.h"
+#include "tiler/tile/measure.h"
+#include "tiler/tile/reference.h"
+#include "tiler/tile/tile_frame.h"
+
+namespace terrane::tiler {
+namespace {
+
+using hierarchy::ChainOptions;
+using hierarchy::ChainResult;
+using hierarchy::Corners;
+using hierarchy::FinerLevel;
+using hierarchy::Place;
+using hierarchy::SampleId;
+using hierarchy::TerrainMesh;
+using hierarchy::TerrainVertex;
+using hierarchy::VertexKind;
+
+/// The triangles that touch a seam, of both its tiles.
+struct Strip {
+  std::vector<SampleId> samples;     ///< of each vertex; {-1, -1} inside the tiles
+  std::vector<LatticePoint> points;  ///< on the finer level's lattice; empty at level 0
+  std::vector<Corners> triangles;
+};
+
+bool contains(const Window& window, const SampleId& sample) {
+  return sample.column >= window.column && sample.column < window.column + window.columns &&
+         sample.row >= window.row && sample.row < window.row + window.rows;
+}
+
+/// Keeps the triangles that touch the line, and their vertices.
+Strip cut_strip(const Strip& all, const Window& line) {
+  constexpr std::uint32_t kUnused = ~std::uint32_t{0};
+  std::vector<std::uint32_t> number(all.samples.size(), kUnused);
+  Strip strip;
+  for (const Corners& corners : all.triangles) {
+    const auto touches = [&](std::uint32_t v) { return contains(line, all.samples[v]); };
+    if (std::ranges::none_of(corners, touches)) continue;
+    Corners& kept = strip.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::uint32_t& v = number[corners[k]];
+      if (v == kUnused) {
+        v = static_cast<std::uint32_t>(strip.samples.size());
+        strip.samples.push_back(all.samples[corners[k]]);
+        if (!all.points.empty()) strip.points.push_back(all.points[corners[k]]);
+      }
+      kept[k] = v;
+    }
+  }
+  return strip;
+}
+
+/// The cells of a tile next to a seam: two on its side, so that the diagonals in the tile's corners
+/// run as in the tile itself.
+Window beside(Window tile, const SeamId& seam, bool is_first) {
+  constexpr std::int64_t kSamples = 3;
+  std::int64_t& begin = seam.is_column ? tile.column : tile.row;
+  std::int64_t& count = seam.is_column ? tile.columns : tile.rows;
+  const std::int64_t kept = std::min(count, kSamples);
+  if (is_first) begin += count - kept;
+  count = kept;
+  return tile;
+}
+
+Window unite(const Window& a, const Window& b) {
+  const std::int64_t column = std::min(a.column, b.column), row = std::min(a.row, b.row);
+  return {column, row, std::max(a.column + a.columns, b.column + b.columns) - column,
+          std::max(a.row + a.rows, b.row + b.rows) - row};
+}
+
+/// A seam on its way: the samples around it, its map to the world, its strip.
+class SeamBuild {
+ public:
+  SeamBuild(const TileSource& source, const SeamId& seam, Strip strip, const Window& window)
+      : source_(source),
+        seam_(seam),
+        strip_(std::move(strip)),
+        samples_(source.heights, window, 0, strip_.triangles.size()),
+        frame_(source.world, source.lattice, window, seam.first.level),
+        reference_(samples_, frame_, step_m() / frame_.spacing_m()) {
+    place_vertices();
+    list_chain();
+  }
+
+  SeamChain run(double tolerance_m) {
+    const double step_cells = step_m() / frame_.spacing_m();
+    // as in build_tile: the grid frame's straight lines are not quite the world's
+    ChainOptions options{
+        .tolerance_m = kShare * 0.999 * tolerance_m,
+        .blend_tolerance_m = 0.999 * tolerance_m,
+        .smallest_altitude_cells = source_.lattice.smallest_altitude_steps() * step_cells,
+        .largest_bend_m =
+            std::min(kLargestBend * tolerance_m, kLargestBend_cells * frame_.spacing_m())};
+    constexpr int kMostTries = 8;
+    for (int tries = 0; tries < kMostTries; ++tries) {
+      const ChainResult result =
+          hierarchy::collapse_chain(mesh_, chain_, finer_, reference_.field(), frame_, options);
+      if (result.collapses == 0) break;
+      const auto [errors, noted] =
+          measure(measured_meshes(result), samples_, frame_, step_m(), kNotedShare * tolerance_m);
+      const double worst_m = std::ranges::max(errors, {}, &MeasuredError::max_m).max_m;
+      if (worst_m <= kLargestShare * tolerance_m) return left_out(result);
+      if (reference_.learn(noted)) continue;
+      const double factor = std::min(0.98, kLargestShare * tolerance_m / worst_m);
+      options.tolerance_m *= factor;
+      options.blend_tolerance_m *= factor;
+      options.largest_bend_m *= factor;
+    }
+    return {};
+  }
+
+ private:
+  static constexpr double kShare = 0.95;
+  static constexpr double kLargestBend = 0.25;
+  // as measured over the strip; over a tile the frame may be off by a little more
+  static constexpr double kLargestShare = 0.99;
+  static constexpr double kLargestBend_cells = 0.4;
+
+  double step_m() const { return source_.lattice.step_m(seam_.first.level).x(); }
+
+  void place_vertices() {
+    mesh_.triangles = finer_.triangles = strip_.triangles;
+    const std::vector<LatticePoint> at_samples = written_samples();
+    for (std::size_t v = 0; v < strip_.samples.size(); ++v) {
+      if (!strip_.points.empty()) finer_.places.push_back(frame_.place_of_finer(strip_.points[v]));
+      const LatticePoint point =
+          strip_.samples[v].column >= 0 ? at_samples[v] : finer_.places[v].lattice;
+      mesh_.vertices.push_back({.place = frame_.place_of(point), .sample = strip_.samples[v]});
+    }
+  }
+
+  /// Where the samples of the strip are written at this level.
+  std::vector<LatticePoint> written_samples() const {
+    std::vector<std::size_t> numbers;
+    std::vector<SampleId> samples;
+    std::vector<GridPosition> positions;
+    for (std::size_t v = 0; v < strip_.samples.size(); ++v) {
+      const SampleId& s = strip_.samples[v];
+      if (s.column < 0) continue;
+      numbers.push_back(v);
+      samples.push_back(s);
+      positions.push_back({static_cast<double>(s.column), static_cast<double>(s.row)});
+    }
+    const std::vector<Plumb> plumbs = source_.world.plumbs(positions);
+    const std::vector<double> heights_m = samples_.heights_m(samples);
+    std::vector<LatticePoint> points(strip_.samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      points[numbers[i]] =
+          source_.lattice.of_sample(positions[i], plumbs[i], heights_m[i], seam_.first.level);
+    }
+    return points;
+  }
+
+  void list_chain() {
+    const Window line = samples_of(source_.pyramid, seam_);
+    for (std::uint32_t v = 0; v < strip_.samples.size(); ++v) {
+      if (!contains(line, strip_.samples[v])) continue;
+      chain_.push_back(v);
+      mesh_.vertices[v].kind = VertexKind::kOutline;
+    }
+    std::ranges::sort(chain_, {}, [&](std::uint32_t v) {
+      return std::pair{strip_.samples[v].row, strip_.samples[v].column};
+    });
+    for (const Corners& corners : strip_.triangles) {
+      if (std::ranges::none_of(corners, [&](std::uint32_t v) { return is_on_another_seam(v); })) {
+        continue;
+      }
+      for (const std::uint32_t v : corners) lock(v);
+    }
+    for (const std::uint32_t v : chain_) {
+      if (is_corner(strip_.samples[v])) lock(v);
+    }
+  }
+
+  void lock(std::uint32_t v) { mesh_.vertices[v].kind = VertexKind::kLocked; }
+
+  /// Corners of tiles stay at their level.
+  bool is_corner(const SampleId& sample) const {
+    const Window line = samples_of(source_.pyramid, seam_);
+    const SampleId last{static_cast<std::int32_t>(line.column + line.columns - 1),
+                        static_cast<std::int32_t>(line.row + line.rows - 1)};
+    const SampleId first{static_cast<std::int32_t>(line.column),
+                         static_cast<std::int32_t>(line.row)};
+    return sample == first || sample == last;
+  }
+
+  /// May another seam remove this vertex? Then each seam must leave their triangles alone.
+  bool is_on_another_seam(std::uint32_t v) const {
+    const SampleId& s = strip_.samples[v];
+    if (s.column < 0 || contains(samples_of(source_.pyramid, seam_), s)) return false;
+    for (const TileId& tile : {seam_.first, seam_.second()}) {
+      const Window w = source_.pyramid.window(tile);
+      const bool is_at_side = s.column == w.column || s.column == w.column + w.columns - 1;
+      if (is_at_side && (s.row == w.row || s.row == w.row + w.rows - 1)) return false;
+    }
+    return source_.pyramid.is_on_seam(seam_.first, s.column, s.row) ||
+           source_.pyramid.is_on_seam(seam_.second(), s.column, s.row);
+  }
+
+  /// The strip as it will be, and the finer level on its way there.
+  std::vector<MeasuredMesh> measured_meshes(const ChainResult& result) {
+    collapsed_ = collapsed(result);
+    std::vector<MeasuredMesh> meshes{{{}, collapsed_, {}}};
+    for (const TerrainVertex& vertex : mesh_.vertices) {
+      meshes[0].vertices.push_back(at(vertex.place));
+    }
+    if (finer_.places.empty()) return meshes;
+    for (const double t : measured_moments(reference_.field())) {
+      std::vector<WorldVertex> moving;
+      for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
+        const WorldVertex& to = meshes[0].vertices[result.target[v]];
+        const WorldVertex from = at_finer(v);
+        moving.push_back({{from.plan.column + t * (to.plan.column - from.plan.column),
+                           from.plan.row + t * (to.plan.row - from.plan.row), 0},
+                          from.world + t * (to.world - from.world)});
+      }
+      meshes.push_back({std::move(moving), strip_.triangles, {}});
+    }
+    return meshes;
+  }
+
+  WorldVertex at(const Place& place) const {
+    return {{hierarchy::column_of(place.plan), hierarchy::row_of(place.plan), 0},
+            source_.lattice.world(place.lattice, seam_.first.level)};
+  }
+
+  WorldVertex at_finer(std::size_t v) const {
+    WorldVertex vertex = at(finer_.places[v]);
+    vertex.world = source_.lattice.world(strip_.points[v], seam_.first.level - 1);
+    return vertex;
+  }
+
+  std::vector<Corners> collapsed(const ChainResult& result) const {
+    std::vector<Corners> triangles;
+    for (const Corners& c : strip_.triangles) {
+      const Corners moved{result.target[c[0]], result.target[c[1]], result.target[c[2]]};
+      if (moved[0] != moved[1] && moved[1] != moved[2] && moved[2] != moved[0]) {
+        triangles.push_back(moved);
+      }
+    }
+    return triangles;
+  }
+
+  SeamChain left_out(const ChainResult& result) const {
+    SeamChain chain;
+    for (const std::uint32_t v : chain_) {
+      if (result.target[v] == v) continue;
+      chain.push_back({strip_.samples[v], strip_.samples[result.target[v]]});
+    }
+    return chain;
+  }
+
+  const TileSource& source_;
+  SeamId seam_;
+  Strip strip_;
+  TileSamples samples_;
+  TileFrame frame_;
+  Reference reference_;
+  TerrainMesh mesh_;
+  FinerLevel finer_;
+  std::vector<std::uint32_t> chain_;
+  std::vector<Corners> collapsed_;  // of the last try
+};
+
+/// The samples that the triangles of a strip may cover.
+Window bounds_of(const Strip& strip, const TileSource& source, const SeamId& seam) {
+  const Window both = both_sides(source.pyramid, seam);
+  const TileFrame frame(source.world, source.lattice, both, seam.first.level);
+  double left = INFINITY, right = -INFINITY, top = INFINITY, bottom = -INFINITY;
+  for (const LatticePoint& point : strip.points) {
+    const Place place = frame.place_of_finer(point);
+    left = std::min(left, hierarchy::column_of(place.plan));
+    right = std::max(right, hierarchy::column_of(place.plan));
+    top = std::min(top, hierarchy::row_of(place.plan));
+    bottom = std::max(bottom, hierarchy::row_of(place.plan));
+  }
+  const auto low = [](double at) {
+    return std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(at)));
+  };
+  const auto high = [](double at, std::int64_t count) {
+    return std::min<std::int64_t>(count - 1, static_cast<std::int64_t>(std::ceil(at)));
+  };
+  const std::int64_t column = low(left), row = low(top);
+  return {both.column + column, both.row + row, high(right, both.columns) - column + 1,
+          high(bottom, both.rows) - row + 1};
+}
+
+}  // namespace
+
+SeamChain build_leaf_seam(const TileSource& source, const SeamId& seam, double tolerance_m) {
+  const Window sides[] = {beside(source.pyramid.window(seam.first), seam, true),
+                          beside(source.pyramid.window(seam.second()), seam, false)};
+  const Window window = unite(sides[0], sides[1]);
+  const HeightGrid grid = source.heights.read(window);
+  std::vector<TileMesh> meshes;
+  for (const Window& side : sides) {
+    hierarchy::GridTriangles full = hierarchy::triangulate(grid, side);
+    TileMesh& mesh = meshes.emplace_back();
+    mesh.points.resize(full.vertices.size());
+    mesh.samples = std::move(full.vertices);
+    mesh.triangles = std::move(full.triangles);
+  }
+  JoinedTiles joined = join(meshes);
+  Strip strip = cut_strip({std::move(joined.samples), {}, std::move(joined.triangles)},
+                          samples_of(source.pyramid, seam));
+  if (strip.triangles.empty()) return {};
+  return SeamBuild(source, seam, std::move(strip), window).run(tolerance_m);
+}
+
+SeamChain build_parent_seam(const TileSource& source, const SeamId& seam,
+                            const std::vector<TileMesh>& beside, double tolerance_m) {
+  JoinedTiles joined = join(beside);
+  Strip strip =
+      cut_strip({std::move(joined.samples), std::move(joined.points), std::move(joined.triangles)},
+                samples_of(source.pyramid, seam));
+  if (strip.triangles.empty()) return {};
+  const Window window = bounds_of(strip, source, seam);
+  return SeamBuild(source, seam, std::move(strip), window).run(tolerance_m);
+}
+
+std::vector<TileId> tiles_beside(const Pyramid& pyramid, const SeamId& seam) {
+  std::vector<TileId> result;
+  const Window line = samples_of(pyramid, seam);
+  for (const TileId& tile : {seam.first, seam.second()}) {
+    for (const TileId& child : pyramid.children(tile)) {
+      const Window window = pyramid.window(child);
+      const bool reaches =
+          seam.is_column
+              ? window.column <= line.column && line.column < window.column + window.columns
+              : window.row <= line.row && line.row < window.row + window.rows;
+      if (reaches) result.push_back(child);
+    }
+  }
+  return result;
+}
+
+}  // namespace terrane::tiler

@@ -1,0 +1,256 @@
+#include "tiler/tile/measure.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "hierarchy/collapse/sample_field.h"
+
+namespace terrane::tiler {
+namespace {
+
+using hierarchy::FieldPoint;
+using hierarchy::FieldSample;
+
+constexpr double kOnEdge = 1e-7;  // as a share of a triangle
+
+// a vertex's place over the grid is rounded to whole units, so a triangle may lie beside its own
+// plan by that: who looks for its samples looks as far
+constexpr double kPlanRounding_cells = 1.0 / hierarchy::kUnitsPerCell;
+
+/// The samples of a patch, and where they stand in the world.
+class Patch {
+ public:
+  Patch(const TileFrame& frame, const Window& tile, const Window& patch, const HeightGrid& grid)
+      : window(patch),
+        first_column(patch.column - tile.column),
+        first_row(patch.row - tile.row),
+        frame_(frame),
+        grid_(grid) {
+    for (std::int64_t row = 0; row < patch.rows; ++row) {
+      rows_.push_back(frame.row(static_cast<double>(first_row + row)));
+    }
+  }
+
+  /// Columns and rows count from the patch's first sample here.
+  Plumb plumb(std::int64_t column, std::int64_t row) const {
+    return rows_[static_cast<std::size_t>(row)].plumb(static_cast<double>(first_column + column));
+  }
+  double height_m(std::int64_t column, std::int64_t row) const {
+    return grid_.at(window.column + column, window.row + row);
+  }
+  /// The k-th sample, row by row, for a SampleField of the tile.
+  FieldSample sample(std::size_t k) const {
+    const auto column = static_cast<std::int64_t>(k) % window.columns;
+    const auto row = static_cast<std::int64_t>(k) / window.columns;
+    const auto c = static_cast<double>(first_column + column);
+    const auto r = static_cast<double>(first_row + row);
+    return {static_cast<float>(c), static_cast<float>(r),
+            height_m(column, row) - frame_.drop_m(c, r)};
+  }
+  FieldPoint local(const FieldPoint& tile_place) const {
+    return {tile_place.column - static_cast<double>(first_column),
+            tile_place.row - static_cast<double>(first_row), 0};
+  }
+
+  const Window window;
+  const std::int64_t first_column, first_row;  // in the tile
+
+ private:
+  const TileFrame& frame_;
+  const HeightGrid& grid_;
+  std::vector<TileFrame::Row> rows_;
+};
+
+/// The errors of one mesh at the samples of one patch.
+class Measurement {
+ public:
+  Measurement(const TileFrame& frame, double step_m, const Patch& patch)
+      : frame_(frame),
+        step_m_(step_m),
+        patch_(patch),
+        shape_{patch.window.columns, patch.window.rows},
+        worst_m_(static_cast<std::size_t>(shape_.columns * shape_.rows), kUnmeasured) {}
+
+  void add_triangle(const WorldVertex& a, const WorldVertex& b, const WorldVertex& c) {
+    if (is_beside(a.plan, b.plan, c.plan)) return;
+    // as a ray along the plumb line meets a triangle (Moeller and Trumbore 1997)
+    const Eigen::Vector3d corner = a.world;
+    const Eigen::Vector3d side_b = b.world - corner, side_c = c.world - corner;
+    const double slack_cells =
+        kPlanRounding_cells + std::max({bend_cells(a, b), bend_cells(b, c), bend_cells(c, a)});
+    for_each_span(patch_.local(a.plan), patch_.local(b.plan), patch_.local(c.plan), shape_,
+                  slack_cells, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+                    for (std::int64_t column = first; column <= last; ++column) {
+                      const Plumb plumb = patch_.plumb(column, row);
+                      const Eigen::Vector3d p = plumb.up.cross(side_c);
+                      const Eigen::Vector3d s = plumb.base - corner;
+                      const Eigen::Vector3d q = s.cross(side_b);
+                      const double scale = 1 / side_b.dot(p);
+                      const double u = s.dot(p) * scale, v = plumb.up.dot(q) * scale;
+                      if (u < -kOnEdge || v < -kOnEdge || u + v > 1 + kOnEdge) continue;
+                      add(column, row, side_c.dot(q) * scale);
+                    }
+                    return true;
+                  });
+  }
+
+  /// Measures what no triangle covers, but lies within a step of the rim: against its nearest
+  /// point.
+  void add_rim(const MeasuredMesh& mesh) {
+    std::map<std::size_t, NearRim> near;
+    for (const auto& [a, b] : mesh.rim) find_near(mesh.vertices[a], mesh.vertices[b], near);
+    for (const auto& [sample, nearest] : near) worst_m_[sample] = nearest.error_m;
+  }
+
+  void note(double noted_m, std::vector<bool>& is_noted) const {
+    for (std::size_t k = 0; k < worst_m_.size(); ++k) {
+      if (worst_m_[k] > noted_m) is_noted[k] = true;
+    }
+  }
+
+  MeasuredError result() const {
+    MeasuredError result;
+    for (const double error_m : worst_m_) {
+      if (error_m == kUnmeasured) continue;
+      result.max_m = std::max(result.max_m, error_m);
+      result.sum_of_squares_m2 += error_m * error_m;
+      ++result.samples;
+    }
+    // heights are taken at the frame's places, which are off by a little: on slopes of up to 3 the
+    // heights then are by four times that at most
+    result.max_m += 4 * frame_.accuracy_m();
+    return result;
+  }
+
+ private:
+  static constexpr double kUnmeasured = -1;
+
+  /// The nearest point of the rim to a sample beside it.
+  struct NearRim {
+    double distance_m = std::numeric_limits<double>::infinity();
+    double error_m = 0;
+  };
+
+  void find_near(const WorldVertex& a, const WorldVertex& b,
+                 std::map<std::size_t, NearRim>& near) const {
+    const FieldPoint from = patch_.local(a.plan), to = patch_.local(b.plan);
+    const double reach = step_m_ / frame_.spacing_m();
+    const auto first_column = std::ceil(std::min(from.column, to.column) - reach);
+    const auto last_column = std::floor(std::max(from.column, to.column) + reach);
+    const auto first_row = std::ceil(std::min(from.row, to.row) - reach);
+    const auto last_row = std::floor(std::max(from.row, to.row) + reach);
+    for (double row = std::max(0.0, first_row);
+         row <= std::min(last_row, static_cast<double>(shape_.rows - 1)); ++row) {
+      for (double column = std::max(0.0, first_column);
+           column <= std::min(last_column, static_cast<double>(shape_.columns - 1)); ++column) {
+        find_near(static_cast<std::int64_t>(column), static_cast<std::int64_t>(row), a, b, near);
+      }
+    }
+  }
+
+  /// Does the triangle lie wholly beside the patch, with room to spare for slack?
+  bool is_beside(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c) const {
+    constexpr double kRoom = 2;
+    const FieldPoint p = patch_.local(a), q = patch_.local(b), r = patch_.local(c);
+    return std::min({p.column, q.column, r.column}) > static_cast<double>(shape_.columns) + kRoom ||
+           std::max({p.column, q.column, r.column}) < -kRoom ||
+           std::min({p.row, q.row, r.row}) > static_cast<double>(shape_.rows) + kRoom ||
+           std::max({p.row, q.row, r.row}) < -kRoom;
+  }
+
+  double& worst_m(std::int64_t column, std::int64_t row) {
+    return worst_m_[static_cast<std::size_t>(row * shape_.columns + column)];
+  }
+
+  /// How far the straight edge in the world lies beside the straight line over the grid, about.
+  double bend_cells(const WorldVertex& a, const WorldVertex& b) const {
+    const FieldPoint from = a.plan, to = b.plan;
+    const auto base = [&](double t) -> Eigen::Vector3d {
+      return frame_
+          .plumb(from.column + t * (to.column - from.column), from.row + t * (to.row - from.row))
+          .base;
+    };
+    const Plumb middle = frame_.plumb((from.column + to.column) / 2, (from.row + to.row) / 2);
+    const Eigen::Vector3d gap = middle.base - (base(0) + base(1)) / 2;
+    constexpr double kToBeSure = 2;
+    return kToBeSure * (gap - gap.dot(middle.up) * middle.up).norm() / frame_.spacing_m();
+  }
+
+  /// A sample on an edge is under two triangles: the worse one stays, and it counts once.
+  void add(std::int64_t column, std::int64_t row, double on_mesh_m) {
+    const double height_m = patch_.height_m(column, row);
+    if (std::isnan(height_m)) return;
+    worst_m(column, row) = std::max(worst_m(column, row), std::abs(on_mesh_m - height_m));
+  }
+
+  void find_near(std::int64_t column, std::int64_t row, const WorldVertex& a, const WorldVertex& b,
+                 std::map<std::size_t, NearRim>& near) const {
+    const auto sample = static_cast<std::size_t>(row * shape_.columns + column);
+    const double height_m = patch_.height_m(column, row);
+    if (worst_m_[sample] != kUnmeasured || std::isnan(height_m)) return;
+    const Plumb plumb = patch_.plumb(column, row);
+    const auto flat = [&](const Eigen::Vector3d& v) -> Eigen::Vector3d {
+      return v - v.dot(plumb.up) * plumb.up;
+    };
+    const Eigen::Vector3d from = a.world, along = b.world - from;
+    const double length2 = std::max(flat(along).squaredNorm(), 1e-30);
+    const double t = std::clamp(flat(plumb.base - from).dot(flat(along)) / length2, 0.0, 1.0);
+    const Eigen::Vector3d to_nearest = from + t * along - plumb.base;
+    const double distance_m = flat(to_nearest).norm();
+    if (distance_m > step_m_) return;
+    NearRim& nearest = near[sample];
+    if (distance_m >= nearest.distance_m) return;
+    nearest = {distance_m, std::abs(to_nearest.dot(plumb.up) - height_m)};
+  }
+
+  const TileFrame& frame_;
+  double step_m_;
+  const Patch& patch_;
+  GridShape shape_;
+  std::vector<double> worst_m_;
+};
+
+Measurement measured(const MeasuredMesh& mesh, const Patch& patch, const TileFrame& frame,
+                     double step_m) {
+  Measurement measurement(frame, step_m, patch);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    measurement.add_triangle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+  }
+  measurement.add_rim(mesh);
+  return measurement;
+}
+
+}  // namespace
+
+Measured measure(std::span<const MeasuredMesh> meshes, const TileSamples& samples,
+                 const TileFrame& frame, double step_m, double noted_m) {
+  // by patch, and put together in their order: the result then does not depend on the threads
+  std::vector<Measured> in_patch(samples.patch_count());
+  samples.for_each_patch([&](std::size_t k, const Window& window, const HeightGrid& grid) {
+    const Patch patch(frame, samples.window(), window, grid);
+    std::vector<bool> is_noted(static_cast<std::size_t>(window.columns * window.rows), false);
+    for (const MeasuredMesh& mesh : meshes) {
+      const Measurement measurement = measured(mesh, patch, frame, step_m);
+      in_patch[k].errors.push_back(measurement.result());
+      measurement.note(noted_m, is_noted);
+    }
+    for (std::size_t i = 0; i < is_noted.size(); ++i) {
+      if (is_noted[i]) in_patch[k].noted.push_back(patch.sample(i));
+    }
+  });
+  Measured all{std::vector<MeasuredError>(meshes.size())};
+  for (const Measured& patch : in_patch) {
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+      all.errors[m].max_m = std::max(all.errors[m].max_m, patch.errors[m].max_m);
+      all.errors[m].sum_of_squares_m2 += patch.errors[m].sum_of_squares_m2;
+      all.errors[m].samples += patch.errors[m].samples;
+    }
+    all.noted.insert(all.noted.end(), patch.noted.begin(), patch.noted.end());
+  }
+  return all;
+}
+
+}  // namespace terrane::tiler

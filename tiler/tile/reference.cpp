@@ -1,0 +1,150 @@
+#include "tiler/tile/reference.h"
+
+#include <Eigen/Core>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace terrane::tiler {
+namespace {
+
+using hierarchy::FieldSample;
+using hierarchy::SampleField;
+
+double height_over_datum(const HeightGrid& grid, const Window& tile, const TileFrame& frame,
+                         std::int64_t column, std::int64_t row) {
+  return grid.at(column, row) - frame.drop_m(static_cast<double>(column - tile.column),
+                                             static_cast<double>(row - tile.row));
+}
+
+/// Sums for the least-squares trend.
+class TrendPlane {
+ public:
+  void add(double x, double y, double z) {
+    const Eigen::Vector3d terms(1, x, y);
+    products_ += terms * terms.transpose();
+    heights_ += z * terms;
+  }
+
+  /// Where fewer than three samples span a plane, one of those through them.
+  Eigen::Vector3d solve() const {
+    return products_.completeOrthogonalDecomposition().solve(heights_);
+  }
+
+ private:
+  Eigen::Matrix3d products_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d heights_ = Eigen::Vector3d::Zero();
+};
+
+/// Calls visit(column, row, height over the datum) for the samples with data, counted from the
+/// tile's first.
+template <class Visit>
+void for_each_height(const Window& window, const HeightGrid& grid, const Window& tile,
+                     const TileFrame& frame, const Visit& visit) {
+  for (std::int64_t row = window.row; row < window.row + window.rows; ++row) {
+    for (std::int64_t column = window.column; column < window.column + window.columns; ++column) {
+      if (!grid.has_data(column, row)) continue;
+      visit(static_cast<double>(column - tile.column), static_cast<double>(row - tile.row),
+            height_over_datum(grid, tile, frame, column, row));
+    }
+  }
+}
+
+/// Calls visit(part) for each square part of a window, the last ones cut off by it.
+template <class Visit>
+void for_each_part(const Window& window, std::int64_t side, const Visit& visit) {
+  for (std::int64_t row = 0; row < window.rows; row += side) {
+    for (std::int64_t column = 0; column < window.columns; column += side) {
+      visit(Window{window.column + column, window.row + row,
+                   std::min(side, window.columns - column), std::min(side, window.rows - row)});
+    }
+  }
+}
+
+/// Appends the extremes of the blocks of one trend.
+void add_extremes(const Window& around, std::int64_t block_cells, const HeightGrid& grid,
+                  const Window& tile, const TileFrame& frame, std::vector<FieldSample>& result) {
+  const auto x0 = static_cast<double>(around.column - tile.column);
+  const auto y0 = static_cast<double>(around.row - tile.row);
+  TrendPlane plane;
+  for_each_height(around, grid, tile, frame,
+                  [&](double x, double y, double z) { plane.add(x - x0, y - y0, z); });
+  const Eigen::Vector3d trend = plane.solve();
+
+  for_each_part(around, block_cells, [&](const Window& block) {
+    FieldSample top, bottom;
+    double highest = -INFINITY, lowest = INFINITY;
+    for_each_height(block, grid, tile, frame, [&](double x, double y, double z) {
+      const double above = z - trend.dot(Eigen::Vector3d(1, x - x0, y - y0));
+      const FieldSample sample{static_cast<float>(x), static_cast<float>(y), z};
+      if (above > highest) top = sample;
+      if (above < lowest) bottom = sample;
+      highest = std::max(highest, above);
+      lowest = std::min(lowest, above);
+    });
+    if (highest >= lowest) result.push_back(top);
+    if (highest > lowest) result.push_back(bottom);
+  });
+}
+
+SampleField full_field(const TileSamples& samples, const TileFrame& frame) {
+  const Window& tile = samples.window();
+  SampleField field{tile.columns, tile.rows, {}};
+  field.heights_m.resize(static_cast<std::size_t>(tile.columns * tile.rows));
+  samples.for_each_patch([&](std::size_t, const Window& patch, const HeightGrid& grid) {
+    for (std::int64_t row = patch.row; row < patch.row + patch.rows; ++row) {
+      const std::int64_t first = (row - tile.row) * tile.columns - tile.column;
+      for (std::int64_t column = patch.column; column < patch.column + patch.columns; ++column) {
+        field.heights_m[static_cast<std::size_t>(first + column)] =
+            height_over_datum(grid, tile, frame, column, row);
+      }
+    }
+  });
+  return field;
+}
+
+std::vector<FieldSample> extremes_of_blocks(const TileSamples& samples, const TileFrame& frame) {
+  const std::int64_t block_cells = samples.block_cells();
+  std::vector<std::vector<FieldSample>> in_patch(samples.patch_count());
+  samples.for_each_patch([&](std::size_t k, const Window& patch, const HeightGrid& grid) {
+    for_each_part(patch, TileSamples::kBlocksPerTrend * block_cells, [&](const Window& around) {
+      add_extremes(around, block_cells, grid, samples.window(), frame, in_patch[k]);
+    });
+  });
+  std::vector<FieldSample> result;
+  for (const auto& part : in_patch) result.insert(result.end(), part.begin(), part.end());
+  return result;
+}
+
+bool is_before(const FieldSample& a, const FieldSample& b) {
+  return std::pair(a.row, a.column) < std::pair(b.row, b.column);
+}
+
+bool is_same(const FieldSample& a, const FieldSample& b) {
+  return a.row == b.row && a.column == b.column;
+}
+
+}  // namespace
+
+Reference::Reference(const TileSamples& samples, const TileFrame& frame, double slack_cells) {
+  if (samples.block_cells() == 1) {
+    field_ = full_field(samples, frame);
+  } else {
+    field_ = {samples.window().columns, samples.window().rows, {}};
+    kept_ = extremes_of_blocks(samples, frame);
+    field_.keep(samples.block_cells(), kept_);
+  }
+  field_.slack_cells = slack_cells;
+}
+
+bool Reference::learn(const std::vector<FieldSample>& samples) {
+  if (!field_.is_reduced()) return false;
+  const std::size_t before = kept_.size();
+  kept_.insert(kept_.end(), samples.begin(), samples.end());
+  std::ranges::sort(kept_, is_before);
+  kept_.erase(std::unique(kept_.begin(), kept_.end(), is_same), kept_.end());
+  field_.keep(field_.block_cells, kept_);
+  return kept_.size() > before;
+}
+
+}  // namespace terrane::tiler

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "hierarchy/collapse/sample_field.h"
+#include "tiler/tile/tile_frame.h"
+#include "tiler/tile/tile_samples.h"
+
+namespace terrane::tiler {
+
+/// What collapses are held against: every sample; or, where there are very many, of each block the
+/// two that stick out most above and below the trend of the terrain around it, and what it was
+/// told to learn.
+///
+/// The trend is a plane over TileSamples::kBlocksPerTrend blocks each way: over the block itself it
+/// would follow what is rough in it.
+class Reference {
+ public:
+  /// \param slack_cells  see SampleField.
+  Reference(const TileSamples& samples, const TileFrame& frame, double slack_cells);
+
+  /// Heights over the curved datum of the frame.
+  const hierarchy::SampleField& field() const { return field_; }
+
+  /// Adds samples that a mesh within the tolerance of the reference was too far from.
+  /// \return whether any of them was not held against already.
+  bool learn(const std::vector<hierarchy::FieldSample>& samples);
+
+ private:
+  hierarchy::SampleField field_;
+  std::vector<hierarchy::FieldSample> kept_;  // if the field is reduced: what it holds
+};
+
+/// The moments of a blend at which it is measured in the world. Every sample of the reference has
+/// been held against the blend at every moment; what a reduced one leaves out has not.
+inline std::span<const double> measured_moments(const hierarchy::SampleField& reference) {
+  static constexpr double kMoments[] = {0.5, 0.125, 0.25, 0.375, 0.625, 0.75, 0.875};
+  return std::span(kMoments).first(reference.is_reduced() ? std::size(kMoments) : 1);
+}
+
+/// Share of the tolerance beyond which samples are worth learning: they are over it soon.
+inline constexpr double kNotedShare = 0.9;
+
+}  // namespace terrane::tiler

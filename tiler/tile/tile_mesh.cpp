@@ -1,0 +1,39 @@
+#include "tiler/tile/tile_mesh.h"
+
+#include "tiler/files/work_file.h"
+
+namespace terrane::tiler {
+namespace {
+
+constexpr std::uint64_t kMagic = 0x32656c6974727274;  // "trrtile2"
+
+}  // namespace
+
+void write_finished_tile(const FinishedTile& tile, const std::filesystem::path& file) {
+  WorkFileWriter writer;
+  writer.add(kMagic);
+  writer.add(tile.descendants);
+  writer.add(tile.mesh.points);
+  writer.add(tile.mesh.samples);
+  writer.add(tile.mesh.normals);
+  writer.add(tile.mesh.grounds);
+  writer.add(tile.mesh.triangles);
+  writer.add(tile.mesh.error);
+  writer.write(file);
+}
+
+FinishedTile read_finished_tile(const std::filesystem::path& file) {
+  WorkFileReader reader(file);
+  if (reader.get<std::uint64_t>() != kMagic) reader.refuse();
+  FinishedTile tile;
+  tile.descendants = reader.get_vector<TileRecord>();
+  tile.mesh.points = reader.get_vector<LatticePoint>();
+  tile.mesh.samples = reader.get_vector<hierarchy::SampleId>();
+  tile.mesh.normals = reader.get_vector<Eigen::Vector3f>();
+  tile.mesh.grounds = reader.get_vector<Ground>();
+  tile.mesh.triangles = reader.get_vector<hierarchy::Corners>();
+  tile.mesh.error = reader.get<MeasuredError>();
+  return tile;
+}
+
+}  // namespace terrane::tiler
