@@ -10,7 +10,7 @@
 #include "archive/pack.h"
 #include "archive/pmtiles_header.h"
 #include "core/errors.h"
-#include "tests/archive/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace terrane::archive {
 namespace {
@@ -36,7 +36,7 @@ class DamagedArchive : public ::testing::TestWithParam<const char*> {
 
   /// The same archive with directory and metadata uncompressed: no checksum of gzip's shields them.
   static std::string with_plain_directories(const std::string& packed) {
-    testing::TemporaryFolder folder;
+    terrane::testing::TemporaryFolder folder;
     folder.write("x", packed);
     PmtilesHeader header = read_header(ArchiveFile(folder / "x"));
     const auto plain = [&](const PmtilesHeader::Section& section) {
@@ -75,7 +75,7 @@ class DamagedArchive : public ::testing::TestWithParam<const char*> {
     }
   }
 
-  testing::TemporaryFolder folder_;
+  terrane::testing::TemporaryFolder folder_;
   std::string good_;
 };
 

@@ -10,14 +10,14 @@
 #include "archive/pmtiles_header.h"
 #include "archive/write_three_tz.h"
 #include "core/errors.h"
-#include "tests/archive/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace terrane::archive {
 namespace {
 
 namespace fs = std::filesystem;
+using terrane::testing::TemporaryFolder;
 using ::testing::HasSubstr;
-using testing::TemporaryFolder;
 
 class Pack : public ::testing::TestWithParam<const char*> {
  protected:

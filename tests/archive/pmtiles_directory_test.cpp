@@ -5,7 +5,7 @@
 #include <random>
 
 #include "core/errors.h"
-#include "tests/archive/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace terrane::archive {
 namespace {
@@ -18,7 +18,7 @@ class Directory : public ::testing::Test {
     return decode_directory(bytes, ArchiveFile(folder_ / "x.pmtiles"));
   }
 
-  testing::TemporaryFolder folder_;
+  terrane::testing::TemporaryFolder folder_;
 };
 
 // Chapter 4.2 of the specification, by hand: two entries, ids 5 and 5 + 300, run lengths 1 and 2,

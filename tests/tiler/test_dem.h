@@ -1,7 +1,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -14,6 +13,7 @@
 #include "core/georeference.h"
 #include "core/height_source.h"
 #include "core/height_statistics.h"
+#include "tests/temporary_folder.h"
 
 namespace terrane::tiler::testing {
 
@@ -92,22 +92,7 @@ class GeographicPlace final : public Georeference {
   double step_deg_;
 };
 
-/// A folder of this test's own, removed with it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "terrane_test_XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+using terrane::testing::TemporaryFolder;
 
 inline std::string content_of(const std::filesystem::path& file) {
   std::ostringstream content;

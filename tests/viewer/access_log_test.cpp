@@ -7,9 +7,9 @@
 #include <iterator>
 
 #include "core/errors.h"
+#include "tests/temporary_folder.h"
 #include "tests/viewer/raw_http.h"
 #include "tests/viewer/running_server.h"
-#include "tests/viewer/temporary_folder.h"
 
 namespace terrane::viewer {
 namespace {
@@ -39,7 +39,7 @@ TEST(AccessLogLine, CannotBeForgedByAClient) {
 }
 
 TEST(AccessLog, HasALineForEachRequest) {
-  const testing::TemporaryFolder folder;
+  const terrane::testing::TemporaryFolder folder;
   folder.write("served/a.glb", "abcdefghij");
   const auto log = folder.path() / "log";
   {

@@ -8,21 +8,21 @@
 #include "archive/deflate.h"
 #include "archive/pack.h"
 #include "core/errors.h"
+#include "tests/temporary_folder.h"
 #include "tests/viewer/gunzip.h"
 #include "tests/viewer/raw_http.h"
 #include "tests/viewer/running_server.h"
-#include "tests/viewer/temporary_folder.h"
 
 namespace terrane::viewer {
 namespace {
 
 namespace fs = std::filesystem;
+using terrane::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::RawAnswer;
 using testing::request_raw;
 using testing::RunningServer;
-using testing::TemporaryFolder;
 
 const std::string kGzip = "Accept-Encoding: gzip\r\n";
 const std::string kBoth = "Accept-Encoding: gzip, br\r\n";

@@ -11,20 +11,20 @@
 #include <vector>
 
 #include "core/errors.h"
+#include "tests/temporary_folder.h"
 #include "tests/viewer/gunzip.h"
 #include "tests/viewer/raw_http.h"
 #include "tests/viewer/running_server.h"
-#include "tests/viewer/temporary_folder.h"
 
 namespace terrane::viewer {
 namespace {
 
 namespace fs = std::filesystem;
+using terrane::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 using testing::RawAnswer;
 using testing::request_raw;
 using testing::RunningServer;
-using testing::TemporaryFolder;
 
 std::string long_json() {
   std::string json = "[";

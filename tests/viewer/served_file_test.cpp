@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "tests/viewer/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace terrane::viewer {
 namespace {
@@ -32,7 +32,7 @@ class OpenServedFile : public ::testing::Test {
 
   fs::path served() const { return outside_.path() / "served"; }
 
-  testing::TemporaryFolder outside_;
+  terrane::testing::TemporaryFolder outside_;
 };
 
 TEST_F(OpenServedFile, OpensFilesAndIndexPages) {

@@ -14,17 +14,17 @@
 #include <thread>
 #include <vector>
 
+#include "tests/temporary_folder.h"
 #include "tests/viewer/gunzip.h"
 #include "tests/viewer/raw_http.h"
 #include "tests/viewer/running_server.h"
-#include "tests/viewer/temporary_folder.h"
 
 namespace terrane::viewer {
 namespace {
 
+using terrane::testing::TemporaryFolder;
 using testing::request_raw;
 using testing::RunningServer;
-using testing::TemporaryFolder;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 using std::chrono::seconds;

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/errors.h"
-#include "tests/viewer/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace terrane::viewer {
 namespace {
@@ -26,7 +26,7 @@ class WriteViewer : public ::testing::Test {
   void SetUp() override {
     if (viewer_files().empty()) GTEST_SKIP() << "built without the viewer (TERRANE_WEB=OFF)";
   }
-  testing::TemporaryFolder out_;
+  terrane::testing::TemporaryFolder out_;
 };
 
 TEST_F(WriteViewer, WritesTheFrontPageAndWhatItLoads) {
