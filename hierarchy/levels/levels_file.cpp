@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "core/errors.h"
+#include "hierarchy/merge/packed_numbers.h"
 
 namespace terrane::hierarchy {
 namespace {
@@ -18,71 +19,6 @@ constexpr std::size_t kHeaderBytes = 64;
 constexpr std::size_t kChecksumBytes = 4;
 static_assert(std::endian::native == std::endian::little,
               "numbers are stored as they lie in memory");
-
-// levels_file's own numbers: 7 bits a byte, the lowest first; signed ones with the sign lowest
-class Writer {
- public:
-  void number(std::uint64_t value) {
-    for (; value >= 0x80; value >>= 7) bytes_ += static_cast<char>(value | 0x80);
-    bytes_ += static_cast<char>(value);
-  }
-  void signed_number(std::int64_t value) {
-    number((static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63));
-  }
-  void difference(const Eigen::Vector3i& value, const Eigen::Vector3i& from) {
-    for (int axis = 0; axis < 3; ++axis) {
-      signed_number(std::int64_t{value[axis]} - std::int64_t{from[axis]});
-    }
-  }
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  std::string bytes_;
-};
-
-class Reader {
- public:
-  Reader(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file) {}
-
-  std::uint64_t number() {
-    std::uint64_t value = 0;
-    for (int shift = 0; shift < 64; shift += 7) {
-      if (at_ == bytes_.size()) damaged();
-      const auto byte = static_cast<unsigned char>(bytes_[at_++]);
-      value |= std::uint64_t{byte & 0x7fU} << shift;
-      if (byte < 0x80) return value;
-    }
-    damaged();
-  }
-  std::int64_t signed_number() {
-    const std::uint64_t value = number();
-    return static_cast<std::int64_t>(value >> 1) ^ -static_cast<std::int64_t>(value & 1);
-  }
-  Eigen::Vector3i sum(const Eigen::Vector3i& from) {
-    Eigen::Vector3i value;
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::int64_t sum = from[axis] + signed_number();
-      if (std::abs(sum) > std::numeric_limits<int>::max()) damaged();
-      value[axis] = static_cast<int>(sum);
-    }
-    return value;
-  }
-  /// A number below a limit, stored as the difference from another.
-  std::uint32_t id_near(std::uint32_t from, std::uint64_t limit) {
-    const std::int64_t value = from + signed_number();
-    if (value < 0 || static_cast<std::uint64_t>(value) >= limit) damaged();
-    return static_cast<std::uint32_t>(value);
-  }
-  bool is_at_end() const { return at_ == bytes_.size(); }
-  [[noreturn]] void damaged() const {
-    throw InputError(fmt::format("{}: is damaged. Build it again with terrane levels", file_));
-  }
-
- private:
-  std::string_view bytes_;
-  const std::string& file_;
-  std::size_t at_ = 0;
-};
 
 /// The fixed part, as it lies in the file.
 struct Header {
@@ -95,7 +31,7 @@ struct Header {
 };
 static_assert(sizeof(Header) == kHeaderBytes);
 
-void write_coarsest(const LevelSequence& sequence, Writer& writer) {
+void write_coarsest(const LevelSequence& sequence, PackedWriter& writer) {
   Eigen::Vector3i point(0, 0, 0);
   for (const Eigen::Vector3i& p : sequence.coarsest_points) {
     writer.difference(p, point);
@@ -114,7 +50,7 @@ std::uint64_t rank_of(std::uint32_t apex, const std::vector<std::uint32_t>& link
   return static_cast<std::uint64_t>(std::ranges::find(link, apex) - link.begin());
 }
 
-void write_collapses(const LevelSequence& sequence, Writer& writer) {
+void write_collapses(const LevelSequence& sequence, PackedWriter& writer) {
   LevelRebuilder rebuilder(sequence);
   for (auto level = sequence.levels.rbegin(); level != sequence.levels.rend(); ++level) {
     writer.number(level->size());
@@ -139,11 +75,6 @@ std::string deflated(const std::string& bytes) {
   return packed;
 }
 
-std::uint32_t checksum(std::string_view bytes) {
-  return static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
 Header header_of(const LevelSequence& sequence, std::size_t body_bytes) {
   Header header;
   std::ranges::copy(kMagic, header.magic);
@@ -165,7 +96,7 @@ Header read_header(std::string_view bytes, const std::string& file) {
     throw InputError(
         fmt::format("{}: is no file of levels. Name one that terrane levels wrote", file));
   }
-  const Reader reader(bytes, file);
+  const PackedReader reader(bytes, file);
   Header header;
   if (bytes.size() < kHeaderBytes + kChecksumBytes) reader.damaged();
   std::memcpy(&header, bytes.data(), kHeaderBytes);
@@ -175,11 +106,11 @@ Header read_header(std::string_view bytes, const std::string& file) {
   }
   std::uint32_t stored = 0;
   std::memcpy(&stored, bytes.data() + bytes.size() - kChecksumBytes, kChecksumBytes);
-  if (checksum(bytes.substr(0, bytes.size() - kChecksumBytes)) != stored) reader.damaged();
+  if (crc32_of(bytes.substr(0, bytes.size() - kChecksumBytes)) != stored) reader.damaged();
   return header;
 }
 
-std::string inflated(std::string_view packed, std::size_t size, const Reader& reader) {
+std::string inflated(std::string_view packed, std::size_t size, const PackedReader& reader) {
   // deflate shrinks to a 1032nd at best: no more than that is ever to be allocated
   if (size / 1100 > packed.size()) reader.damaged();
   std::string bytes(size, '\0');
@@ -190,7 +121,7 @@ std::string inflated(std::string_view packed, std::size_t size, const Reader& re
   return bytes;
 }
 
-void read_coarsest(const Header& header, Reader& reader, LevelSequence& sequence) {
+void read_coarsest(const Header& header, PackedReader& reader, LevelSequence& sequence) {
   Eigen::Vector3i point(0, 0, 0);
   for (std::uint32_t i = 0; i < header.vertices; ++i) {
     point = reader.sum(point);
@@ -204,7 +135,8 @@ void read_coarsest(const Header& header, Reader& reader, LevelSequence& sequence
   }
 }
 
-Collapse read_collapse(const LevelRebuilder& rebuilder, std::uint32_t previous, Reader& reader) {
+Collapse read_collapse(const LevelRebuilder& rebuilder, std::uint32_t previous,
+                       PackedReader& reader) {
   const auto next = static_cast<std::uint32_t>(rebuilder.points().size());
   const std::uint32_t centre = reader.id_near(previous, next);
   Collapse collapse{.corners = {centre, next, next + 1}, .after = rebuilder.points()[centre]};
@@ -218,7 +150,7 @@ Collapse read_collapse(const LevelRebuilder& rebuilder, std::uint32_t previous, 
   return collapse;
 }
 
-void read_collapses(const Header& header, Reader& reader, LevelSequence& sequence) {
+void read_collapses(const Header& header, PackedReader& reader, LevelSequence& sequence) {
   LevelRebuilder rebuilder(sequence);
   sequence.levels.resize(header.levels);
   for (auto level = sequence.levels.rbegin(); level != sequence.levels.rend(); ++level) {
@@ -237,14 +169,14 @@ void read_collapses(const Header& header, Reader& reader, LevelSequence& sequenc
 }  // namespace
 
 std::string encode_levels(const LevelSequence& sequence) {
-  Writer body;
+  PackedWriter body;
   write_coarsest(sequence, body);
   write_collapses(sequence, body);
   const Header header = header_of(sequence, body.bytes().size());
   std::string bytes(kHeaderBytes, '\0');
   std::memcpy(bytes.data(), &header, kHeaderBytes);
   bytes += deflated(body.bytes());
-  const std::uint32_t sum = checksum(bytes);
+  const std::uint32_t sum = crc32_of(bytes);
   bytes.resize(bytes.size() + kChecksumBytes);
   std::memcpy(bytes.data() + bytes.size() - kChecksumBytes, &sum, kChecksumBytes);
   return bytes;
@@ -254,8 +186,8 @@ LevelSequence decode_levels(std::string_view bytes, const std::string& file) {
   const Header header = read_header(bytes, file);
   const std::string body =
       inflated(bytes.substr(kHeaderBytes, bytes.size() - kHeaderBytes - kChecksumBytes),
-               header.body_bytes, Reader(bytes, file));
-  Reader reader(body, file);
+               header.body_bytes, PackedReader(bytes, file));
+  PackedReader reader(body, file);
   LevelSequence sequence;
   sequence.lattice = {{header.origin[0], header.origin[1], header.origin[2]}, header.exponent};
   read_coarsest(header, reader, sequence);
