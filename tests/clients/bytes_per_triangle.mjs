@@ -1,5 +1,5 @@
 // bytes_per_triangle.mjs TILE_SET...: bytes per triangle of the level-0 tiles of tile sets, and of the same
-// triangles as quantized-mesh 1.0 with normals. The table of docs/formats.md; not a test.
+// triangles as quantized-mesh 1.0 with normals. The tables of docs/formats.md; not a test.
 import {readFile} from 'node:fs/promises';
 import {join} from 'node:path';
 import {gzipSync} from 'node:zlib';
@@ -14,8 +14,9 @@ async function quantizedMesh(bytes) {
   const {binary} = readGlb(glb);
   const {attributes, indices} = json.meshes[0].primitives[0];
   const view = (index) => {
-    const {byteOffset, byteStride} = json.bufferViews[json.accessors[index].bufferView];
-    return [new DataView(binary.buffer, binary.byteOffset + byteOffset), byteStride];
+    const {bufferView, byteOffset: inView = 0} = json.accessors[index];
+    const {byteOffset, byteStride} = json.bufferViews[bufferView];
+    return [new DataView(binary.buffer, binary.byteOffset + byteOffset + inView), byteStride];
   };
   const {count, min, max, componentType} = json.accessors[attributes.POSITION];
   const [positions, stride] = view(attributes.POSITION);
@@ -48,26 +49,42 @@ async function quantizedMesh(bytes) {
   return Buffer.concat([Buffer.alloc(113), Buffer.from(Uint16Array.from(out).buffer), Buffer.from(oct)]);
 }
 
+/** Bytes of each part of a glb: its text, and its views by the attributes in them. */
+function partsOf({json, jsonBytes}) {
+  const {attributes, indices} = json.meshes[0].primitives[0];
+  const names = new Map();
+  for (const [name, index] of [...Object.entries(attributes), ['indices', indices]]) {
+    const {bufferView} = json.accessors[index];
+    if (bufferView !== undefined) names.set(bufferView, [...(names.get(bufferView) ?? []), name]);
+  }
+  const parts = {json: jsonBytes};
+  for (const [index, inView] of names) {
+    const view = json.bufferViews[index];
+    parts[inView.join('+')] = (view.extensions?.EXT_meshopt_compression ?? view).byteLength;
+  }
+  return parts;
+}
+
 for (const folder of process.argv.slice(2)) {
-  const sums = {triangles: 0, tiles: 0, glb: 0, gzip: 0, withoutMorph: 0, quantized: 0, quantizedGzip: 0};
+  const sums = {glb: 0, gzip: 0};
+  let triangleCount = 0, tileCount = 0;
+  const add = (key, bytes) => (sums[key] = (sums[key] ?? 0) + bytes);
   for (const [file, {level, triangles}] of await contentsOf(folder)) {
     if (level !== 0) continue;
     const bytes = new Uint8Array(await readFile(join(folder, file)));
     const {json} = readGlb(bytes);
+    triangleCount += triangles;
+    ++tileCount;
+    add('glb', bytes.length);
+    add('gzip', gzipSync(bytes).length);
+    const jsonBytes = new DataView(bytes.buffer, bytes.byteOffset).getUint32(12, true);
+    for (const [name, size] of Object.entries(partsOf({json, jsonBytes}))) add(name, size);
     const {attributes} = json.meshes[0].primitives[0];
-    const morph = json.bufferViews[json.accessors[attributes._MORPH].bufferView];
-    sums.triangles += triangles;
-    ++sums.tiles;
-    sums.glb += bytes.length;
-    sums.gzip += gzipSync(bytes).length;
-    if (!morph) continue;
-    sums.withoutMorph += bytes.length - (morph.extensions?.EXT_meshopt_compression ?? morph).byteLength;
     if (json.accessors[attributes.NORMAL].componentType !== 5120) continue;
     const quantized = await quantizedMesh(bytes);
-    sums.quantized += quantized.length;
-    sums.quantizedGzip += gzipSync(quantized).length;
+    add('quantized-mesh', quantized.length);
+    add('quantized-mesh gzip', gzipSync(quantized).length);
   }
-  const per = (key) => (sums[key] / sums.triangles).toFixed(2);
-  console.log(`${folder}: ${sums.tiles} tiles, ${sums.triangles} triangles; bytes per triangle: ` +
-    ['glb', 'gzip', 'withoutMorph', 'quantized', 'quantizedGzip'].map((key) => `${key} ${per(key)}`).join(', '));
+  const each = Object.entries(sums).map(([key, size]) => `${key} ${(size / triangleCount).toFixed(2)}`);
+  console.log(`${folder}: ${tileCount} tiles, ${triangleCount} triangles; bytes per triangle: ${each.join(', ')}`);
 }

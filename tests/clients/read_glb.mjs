@@ -55,9 +55,9 @@ async function plainSums(bytes) {
 }
 
 function reader(json, binary, index) {
-  const {bufferView, componentType} = json.accessors[index];
+  const {bufferView, byteOffset: inView = 0, componentType} = json.accessors[index];
   const {byteOffset, byteStride} = json.bufferViews[bufferView];
-  const view = new DataView(binary.buffer, binary.byteOffset + byteOffset);
+  const view = new DataView(binary.buffer, binary.byteOffset + byteOffset + inView);
   const isShort = componentType === 5122;
   const width = isShort ? 2 : 4;
   const stride = byteStride ?? 3 * width;

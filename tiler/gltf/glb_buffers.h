@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -17,6 +18,9 @@ class GlbBuffers {
 
   /// \return the number of the accessor.
   int add_vertices(const GlbValues& values);
+  /// Two attributes side by side in one view, where that can be: it is shorter than two views.
+  /// \return the numbers of their accessors.
+  std::array<int, 2> add_vertices(const GlbValues& first, const GlbValues& second);
   int add_triangles(const std::vector<std::uint32_t>& indices, std::size_t vertices);
   /// An accessor whose values lie in the compressed bytes of an extension.
   int add_elsewhere(const GlbValues& values, std::size_t count);
@@ -30,6 +34,11 @@ class GlbBuffers {
   const std::string& bytes() const { return bytes_; }
 
  private:
+  /// How values are stored here: as they are without meshopt.
+  Filter filter_of(const GlbValues& values) const;
+  const std::string& stored(const GlbValues& values) const;
+  int add_vertex_view(const std::string& bytes, std::size_t count, std::size_t stride,
+                      Filter filter);
   int add_coded(const std::vector<unsigned char>& coded, std::size_t count, std::size_t stride,
                 const char* mode, const char* filter);
   int add_view(nlohmann::ordered_json view);

@@ -1,5 +1,7 @@
 #include "tiler/gltf/glb_values.h"
 
+#include <meshoptimizer.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -33,12 +35,15 @@ void add_integers(GlbValues& values, const std::array<T, kCount>& element) {
 template <std::size_t kCount>
 GlbValues floats(const std::vector<std::array<std::int32_t, kCount>>& multiples,
                  const std::array<int, kCount>& exponents) {
-  GlbValues values{.components = kCount, .count = multiples.size(), .stride = 4 * kCount};
+  GlbValues values{.components = kCount,
+                   .count = multiples.size(),
+                   .stride = 4 * kCount,
+                   .filter = Filter::kExponential};
   for (const auto& element : multiples) {
     for (std::size_t k = 0; k < kCount; ++k) {
       constexpr std::uint32_t kMantissa = 0xffffff;
       const auto exponent = static_cast<std::uint32_t>(exponents[k]) << 24;
-      append(values.exponential, exponent | (static_cast<std::uint32_t>(element[k]) & kMantissa));
+      append(values.filtered, exponent | (static_cast<std::uint32_t>(element[k]) & kMantissa));
       append(values.bytes, std::ldexp(static_cast<float>(element[k]), exponents[k]));
     }
   }
@@ -98,7 +103,13 @@ GlbValues values_of_normals(const std::vector<Eigen::Vector3f>& normals, bool as
     return floats(multiples, {kExponent, kExponent, kExponent});
   }
   GlbValues values = integers<std::int8_t>(Component::kByte, 3, true);
+  values.filter = Filter::kOctahedral;
   for (const Eigen::Vector3f& n : normals) {
+    constexpr int kBits = 8;
+    const std::array<float, 4> vector{n.x(), n.y(), n.z(), 0};
+    char word[4];
+    meshopt_encodeFilterOct(word, 1, sizeof(word), kBits, vector.data());
+    values.filtered.append(word, sizeof(word));
     const Eigen::Vector3d scaled = n.cast<double>() * 127;
     add_integers(values,
                  std::array{rounded<std::int8_t>(scaled.x()), rounded<std::int8_t>(scaled.y()),

@@ -23,6 +23,16 @@ enum class Component {
   kFloat = 5126
 };
 
+/// The filters of EXT_meshopt_compression.
+enum class Filter {
+  kNone,
+  /// Floats that are small whole multiples of a power of two: a byte of exponent, 24 bits of
+  /// mantissa. Loses nothing.
+  kExponential,
+  /// Unit vectors: two bytes of direction, a one and a zero. Within a step and a half of the bytes.
+  kOctahedral,
+};
+
 /// What one vertex attribute holds, as it lies in a buffer.
 struct GlbValues {
   Component component = Component::kFloat;
@@ -31,11 +41,10 @@ struct GlbValues {
   std::size_t count = 0;
   std::size_t stride = 0;  ///< bytes from one element to the next: whole words
   std::string bytes;
-  /// The same as the words of meshopt's filter EXPONENTIAL (a byte of exponent, 24 bits of
-  /// mantissa), for floats that are small whole multiples of a power of two; else empty.
-  std::string exponential;
+  Filter filter = Filter::kNone;
+  std::string filtered;  ///< with a filter: what it makes the values of, as long as they are
   std::vector<double> low, high;     ///< smallest and largest per component, where they are stated
-  std::array<int, 3> exponent = {};  ///< with `exponential`: of the power of two, per component
+  std::array<int, 3> exponent = {};  ///< with kExponential: of the power of two, per component
 };
 
 /// Positions or displacements: 16-bit integers where all fit and \p positions allows them, else

@@ -82,9 +82,10 @@ class Document {
       primitive = draco_primitive(encode_draco(arrays), arrays.indices.size());
     } else {
       ordered_json attributes;
-      attributes["POSITION"] = buffers_.add_vertices(arrays.positions);
+      const auto [position, morph] = buffers_.add_vertices(arrays.positions, arrays.morphs);
+      attributes["POSITION"] = position;
       attributes["NORMAL"] = buffers_.add_vertices(arrays.normals);
-      attributes["_MORPH"] = buffers_.add_vertices(arrays.morphs);
+      attributes["_MORPH"] = morph;
       if (arrays.places) attributes["TEXCOORD_0"] = buffers_.add_vertices(*arrays.places);
       if (arrays.colours) attributes["COLOR_0"] = buffers_.add_vertices(*arrays.colours);
       primitive["attributes"] = attributes;
@@ -92,7 +93,6 @@ class Document {
       primitive["indices"] = buffers_.add_triangles(arrays.indices, arrays.positions.count);
     }
     primitive["material"] = 0;
-    primitive["mode"] = 4;
     return primitive;
   }
 
@@ -117,8 +117,7 @@ class Document {
     const bool has_colours = tile_.texture.is_there() || format_.colour != Colour::kNone;
     if (!has_colours) surface["baseColorFactor"] = {0.62, 0.6, 0.55, 1};
     if (tile_.texture.is_there()) surface["baseColorTexture"]["index"] = 0;
-    surface["metallicFactor"] = 0;
-    surface["roughnessFactor"] = 1;
+    surface["metallicFactor"] = 0;  // what is left out is as wanted: 1 is its roughness
     if (format_.material == Material::kUnlit) {
       material["extensions"]["KHR_materials_unlit"] = ordered_json::object();
     }

@@ -6,9 +6,8 @@
 namespace terrane::tiler {
 namespace {
 
-// of the 65,536 places that 16 bits tell apart: the rest is room for what bulges between the probed
-// points of a tile, and for vertices that are placed a little outside it by rounding
-constexpr double kUsableSteps = 61000;
+// along a leaf tile, or half as many, however wide the tolerance: 64 to 128 a cell
+constexpr double kEnoughSteps = 8192;
 
 Eigen::Vector3d extent(const Pyramid& pyramid, const WorldFrame& world, const TileId& tile,
                        const HeightStatistics& heights) {
@@ -41,7 +40,7 @@ double smallest_step(double extent_m, double steps) {
 double leaf_step(double extent_m, double tolerance_m) {
   // a flat DEM has no relief at all, but wants a step
   constexpr double kFinestStep_m = 1.0 / 1024;
-  const double step_m = std::min(smallest_step(extent_m, kUsableSteps),
+  const double step_m = std::min(smallest_step(extent_m, kEnoughSteps),
                                  std::exp2(std::floor(std::log2(tolerance_m / 16))));
   return std::max({kFinestStep_m, step_m, smallest_step(extent_m, Lattice::kMostSteps)});
 }

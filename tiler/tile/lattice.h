@@ -19,9 +19,10 @@ class Lattice {
   /// sums of position and offset are exact a few tiles away.
   static constexpr double kMostSteps = 1 << 22;
 
-  /// Chooses the steps: the finest for which leaf tiles fit 16 bits, but a sixteenth of the
-  /// tolerance at most. Coarser levels keep them as long as kMostSteps allows: rounding a level
-  /// anew moves its vertices, which steep triangles do not take well.
+  /// Chooses the steps: a sixteenth of the tolerance or a little less, but at least 4,096 along a
+  /// leaf tile; finer ones cost bytes and save few triangles. Coarser levels keep them as long as
+  /// kMostSteps allows: rounding a level anew moves its vertices, which steep triangles do not take
+  /// well.
   Lattice(const Pyramid& pyramid, const WorldFrame& world, const HeightStatistics& heights,
           double tolerance_m);
 

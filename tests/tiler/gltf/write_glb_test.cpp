@@ -1,7 +1,10 @@
 #include "tiler/gltf/write_glb.h"
 
 #include <gtest/gtest.h>
+#include <meshoptimizer.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -61,6 +64,52 @@ TEST(EncodeGlb, MorphTargetAndAttributeAreOneAccessor) {
   const TileMesh mesh = square();
   const auto primitive = json_of(encode_glb(tile_of(mesh), {}))["meshes"][0]["primitives"][0];
   EXPECT_EQ(primitive["targets"][0]["POSITION"], primitive["attributes"]["_MORPH"]);
+}
+
+TEST(EncodeGlb, CodedStreamsBeginAsTheExtensionWants) {
+  // appendix A of EXT_meshopt_compression
+  constexpr unsigned char kAttributes = 0xa0, kTriangles = 0xe1;
+  const TileMesh mesh = square();
+  const std::string glb = encode_glb(tile_of(mesh), {});
+  const auto json = json_of(glb);
+  std::size_t triangles = 0;
+  for (const auto& view : json["bufferViews"]) {
+    const auto& coded = view["extensions"]["EXT_meshopt_compression"];
+    const bool is_triangles = coded["mode"] == "TRIANGLES";
+    triangles += is_triangles ? 1 : 0;
+    const std::size_t at = 28 + word_at(glb, 12) + coded.value("byteOffset", std::size_t{0});
+    EXPECT_EQ(static_cast<unsigned char>(glb[at]), is_triangles ? kTriangles : kAttributes);
+  }
+  EXPECT_EQ(triangles, 1U);
+  EXPECT_EQ(json["bufferViews"].size(), 3U);
+}
+
+TEST(EncodeGlb, NormalsGoThroughTheOctahedralFilterAndComeOutWithinTwoSteps) {
+  TileMesh mesh = square();
+  const std::vector<Eigen::Vector3f> normals = {
+      Eigen::Vector3f::UnitZ(), Eigen::Vector3f(0.48F, 0.6F, 0.64F),
+      Eigen::Vector3f(-0.8F, 0.36F, 0.48F), Eigen::Vector3f(0.1F, -0.7F, std::sqrt(0.5F))};
+  mesh.normals = normals;
+  const std::string glb = encode_glb(tile_of(mesh), {});
+  const auto json = json_of(glb);
+  const auto& attributes = json["meshes"][0]["primitives"][0]["attributes"];
+  const auto& accessor = json["accessors"][attributes["NORMAL"].get<std::size_t>()];
+  const auto& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+  const auto& coded = view["extensions"]["EXT_meshopt_compression"];
+  ASSERT_EQ(coded["filter"], "OCTAHEDRAL");
+  std::vector<std::array<std::int8_t, 4>> decoded(4);
+  const auto* from = reinterpret_cast<const unsigned char*>(glb.data()) + 28 + word_at(glb, 12) +
+                     coded.value("byteOffset", std::size_t{0});
+  ASSERT_EQ(meshopt_decodeVertexBuffer(decoded.data(), 4, 4, from,
+                                       coded["byteLength"].get<std::size_t>()),
+            0);
+  meshopt_decodeFilterOct(decoded.data(), 4, 4);
+  for (const Eigen::Vector3f& n : normals) {
+    const Eigen::Vector3f y_up(n.x() * 127, n.z() * 127, -n.y() * 127);
+    EXPECT_TRUE(std::ranges::any_of(decoded, [&](const auto& d) {
+      return (Eigen::Vector3f(d[0], d[1], d[2]) - y_up).cwiseAbs().maxCoeff() <= 2;
+    })) << n.transpose();
+  }
 }
 
 TEST(EncodeGlb, AccessorBoundsAreThoseOfThePositions) {

@@ -45,8 +45,18 @@ TEST_F(ChosenSteps, FitLeafTilesIntoSixteenBitsWhereTheToleranceIsWide) {
   const Eigen::Vector3d step = lattice(10).step_m(0);
   EXPECT_GE(65535 * step.x(), 64.0 * 30);
   EXPECT_GE(65535 * step.z(), 4400.0);
-  // and no coarser than that: the next finer step would not fit
-  EXPECT_LT(65535 * step.x() / 2, 64.0 * 30 * 1.08);
+}
+
+TEST_F(ChosenSteps, AreAtLeastFourThousandAlongALeafTile) {
+  const Eigen::Vector3d step = lattice(1000).step_m(0);
+  EXPECT_GE(64 * 30 / step.x(), 4096);
+  EXPECT_GE(4400 / step.z(), 4096);
+}
+
+TEST_F(ChosenSteps, AreNoFinerThanAThirtySecondOfTheTolerance) {
+  const Eigen::Vector3d step = lattice(2).step_m(0);
+  EXPECT_GE(step.x(), 2.0 / 32);
+  EXPECT_GE(step.z(), 2.0 / 32);
 }
 
 TEST_F(ChosenSteps, AreASixteenthOfTheToleranceAtMost) {
