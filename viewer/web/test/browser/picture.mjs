@@ -3,8 +3,8 @@ const kMagenta = 0xff00ff;
 
 /**
  * Share of the canvas that terrain covers, its different colours, and the pixels of backdrop that
- * terrain surrounds: `enclosed`, all of them, those of holes in the data too; `cracks`, those of
- * patches that are nowhere three pixels wide and high.
+ * terrain surrounds: `enclosed`, all of them, those of holes in the data too; `cracks`, the places
+ * (x, y from the upper left) of those of patches that are nowhere three pixels wide and high.
  */
 export function readPicture(page) {
   return page.evaluate((magenta) => {
@@ -54,15 +54,44 @@ export function readPicture(page) {
     // what is left is inside: no such pixel lies on the rim of the picture
     const isWide = (i) =>
       [-1, 0, 1].every((dy) => [-1, 0, 1].every((dx) => isBackdrop(i + dy * width + dx)));
-    let [enclosed, cracks] = [0, 0];
+    let enclosed = 0;
+    const cracks = [];
     for (let i = 0; i < pixels.length; ++i) {
       if (reached[i] || !isBackdrop(i)) continue;
       const patch = walk([i]);
       enclosed += patch.length;
-      if (!patch.some(isWide)) cracks += patch.length;
+      if (patch.some(isWide)) continue;
+      cracks.push(...patch.map((at) => [at % width, Math.floor(at / width)]));
     }
     return {drawn: 1 - backdrop / pixels.length, colors: colors.size, enclosed, cracks};
   }, kMagenta);
+}
+
+/** Columns that lookAgain() adds at either side. */
+const kMoreColumns = 64;
+
+/**
+ * The cracks that stay when more of the world is in the picture at its sides. SwiftShader tells the
+ * two sides of a triangle apart by its corners as they are rounded before it is cut off at the rim of the
+ * picture, and fills it by those after: a sliver that reaches over the rim can be left out.
+ */
+export async function lookAgain(page, cracks) {
+  if (cracks.length === 0) return cracks;
+  const size = page.viewportSize();
+  await page.setViewportSize({...size, width: size.width + 2 * kMoreColumns});
+  await page.waitForFunction(
+    (width) => document.getElementById('terrain').width === width,
+    size.width + 2 * kMoreColumns,
+  );
+  await page.evaluate(() => window.terrane.ready());
+  const again = await readPicture(page);
+  await page.setViewportSize(size);
+  await page.waitForFunction(
+    (width) => document.getElementById('terrain').width === width,
+    size.width,
+  );
+  const found = new Set(again.cracks.map(([x, y]) => `${x - kMoreColumns},${y}`));
+  return cracks.filter((place) => found.has(String(place)));
 }
 
 /** The canvas as it is, for differenceTo(). Kept in the page under a name. */
