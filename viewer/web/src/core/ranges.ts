@@ -13,8 +13,8 @@
 // above it are then free.
 import type {Level} from './tileset';
 
-/** m: the share of a range in which vertices morph. */
-export const kMorphShare = 0.25;
+/** m where every level doubles the tolerance. */
+const kMorphShare = 0.25;
 
 /** Room for float32 distances on the graphics card: they are good to about 1e-6. */
 export const kSlack = 1 / 1024;
@@ -24,6 +24,17 @@ const kPrepareFrom = 3;
 
 /** Index = level; one entry for each level except the root's, in metres. */
 export type Ranges = readonly number[];
+
+/**
+ * m: the share of a range in which vertices morph. Ranges grow by 2^(1/k) from level to level: the
+ * inequality leaves boxes some room only if (1 - m) 2^(1/k) is above 1. 0.25 / k leaves half of the finer
+ * range for k = 1, then 0.24, 0.15 and 0.11 of it.
+ *
+ * @param levelsPerOctave k
+ */
+export function morphShareOf(levelsPerOctave: number): number {
+  return kMorphShare / levelsPerOctave;
+}
 
 /**
  * K: pixels that a metre covers at a distance of a metre.
@@ -59,7 +70,7 @@ export function wantedRanges(
     const forError = (levels[l + 1]!.toleranceM * pixelScale) / tolerancePx;
     const finerM = ranges[l - 1];
     const floor = finerM
-      ? smallestAbove(finerM, levels[l]!.diagonalM) * needOf(finerM, nearestM[l]!)
+      ? smallestAbove(finerM, levels[l]!) * needOf(finerM, nearestM[l]!)
       : 0;
     ranges.push(Math.max(forError, floor));
   }
@@ -74,15 +85,18 @@ export function wantedRanges(
 export function reducedRanges(levels: readonly Level[], wanted: Ranges, share: number): Ranges {
   const ranges = wanted.map((range) => range * share);
   for (let l = ranges.length - 2; l >= 0; --l) {
-    const largest = largestBelow(ranges[l + 1]!, levels[l + 1]!.diagonalM);
+    const largest = largestBelow(ranges[l + 1]!, levels[l + 1]!);
     ranges[l] = Math.max(0, Math.min(ranges[l]!, largest));
   }
   return ranges;
 }
 
 /** Where vertices of a level begin and end to morph, in metres from the camera. */
-export function morphInterval(rangeM: number): {beginM: number; endM: number} {
-  return {beginM: rangeM * (1 - kMorphShare), endM: rangeM * (1 - kSlack)};
+export function morphInterval(
+  rangeM: number,
+  morphShare: number,
+): {beginM: number; endM: number} {
+  return {beginM: rangeM * (1 - morphShare), endM: rangeM * (1 - kSlack)};
 }
 
 /** 1 where a level with this range is shown, 0 where it is far from it. */
@@ -91,10 +105,10 @@ function needOf(rangeM: number, nearestM: number): number {
   return Math.min(1, Math.max(0, share));
 }
 
-function smallestAbove(finerRangeM: number, diagonalM: number): number {
-  return ((finerRangeM + diagonalM) * (1 + kSlack)) / (1 - kMorphShare);
+function smallestAbove(finerRangeM: number, {diagonalM, morphShare}: Level): number {
+  return ((finerRangeM + diagonalM) * (1 + kSlack)) / (1 - morphShare);
 }
 
-function largestBelow(coarserRangeM: number, diagonalM: number): number {
-  return (coarserRangeM * (1 - kMorphShare)) / (1 + kSlack) - diagonalM;
+function largestBelow(coarserRangeM: number, {diagonalM, morphShare}: Level): number {
+  return (coarserRangeM * (1 - morphShare)) / (1 + kSlack) - diagonalM;
 }

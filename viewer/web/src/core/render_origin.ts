@@ -21,6 +21,8 @@ export interface LatticePlace {
   /** Lattice point of the tile's origin, in steps. */
   readonly origin: Vec3;
   readonly stepM: Vec3;
+  /** That of the tile's level. */
+  readonly morphShare: number;
 }
 
 /**
@@ -38,7 +40,7 @@ export function morphUniforms(
 ): MorphUniforms {
   const offset = (axis: 0 | 1 | 2) => tile.origin[axis] * tile.stepM[axis] - originM[axis];
   const rangeM = ranges[tile.level];
-  const interval = rangeM ? morphInterval(rangeM) : undefined;
+  const interval = rangeM ? morphInterval(rangeM, tile.morphShare) : undefined;
   return {
     stepM: tile.stepM,
     offsetM: [offset(0), offset(1), offset(2)],

@@ -1,6 +1,7 @@
 // Reads tileset.json and terrane.json (docs/formats.md) into a tree of tiles.
 import {diagonal, type Box} from './box';
 import type {TangentPlane} from './geodetic';
+import {morphShareOf} from './ranges';
 import type {Vec3} from './vec3';
 
 /** One node of the quadtree. */
@@ -48,6 +49,8 @@ export interface Level {
   readonly stepM: Vec3;
   /** Longest diagonal of a tile's box. */
   readonly diagonalM: number;
+  /** Share of its range in which it morphs to the next level. */
+  readonly morphShare: number;
 }
 
 export interface Tileset {
@@ -122,12 +125,13 @@ export function parseTileset(tileset: unknown, terrane: unknown, baseUrl: string
   const root = rootJson.implicitTiling
     ? implicitRoot(rootJson, description.levels.length - 1, baseUrl)
     : parseTile(rootJson, null, baseUrl);
-  const levels = parseLevels(description.levels, root);
+  const levelsPerOctave = description.levels_per_octave ?? 1;
+  const levels = parseLevels(description.levels, root, morphShareOf(levelsPerOctave));
   return {
     root,
     levels,
     tileCells: description.tile_cells,
-    levelsPerOctave: description.levels_per_octave ?? 1,
+    levelsPerOctave,
     minHeightM: description.dem.min_height_m,
     maxHeightM: description.dem.max_height_m,
     cellM: smallestCell(root.box, description.dem),
@@ -215,7 +219,7 @@ export function parseBox(numbers: number[] | undefined, key: string, baseUrl: st
   return {center: at(0), halfAxes: [at(3), at(6), at(9)]};
 }
 
-function parseLevels(json: LevelJson[], root: Tile): Level[] {
+function parseLevels(json: LevelJson[], root: Tile, morphShare: number): Level[] {
   const boxes = new Map<number, number>();
   for (const tile of tilesOf(root)) {
     boxes.set(tile.level, Math.max(boxes.get(tile.level) ?? 0, diagonal(tile.box)));
@@ -228,6 +232,7 @@ function parseLevels(json: LevelJson[], root: Tile): Level[] {
       stepM: level.step_m,
       // the boxes decide which tiles are shown, so theirs counts where it is larger
       diagonalM: Math.max(level.largest_diagonal_m, boxes.get(level.level) ?? 0),
+      morphShare,
     }));
   if (levels.length !== root.level + 1 || levels.some((level, i) => level.level !== i)) {
     throw new TilesetError(`terrane.json: levels are not 0 to ${root.level}, the root's level`);

@@ -163,7 +163,9 @@ export class TerrainView {
   }
 
   private uniformsOf(tile: Tile, content: TileContent, frame: Frame): MorphUniforms {
-    const place = {level: tile.level, origin: content.origin, stepM: content.stepM};
+    const {level} = tile;
+    const {morphShare} = this.tileset.levels[level]!;
+    const place = {level, origin: content.origin, stepM: content.stepM, morphShare};
     const eyeM = subtract(frame.eye, this.originM);
     return morphUniforms(place, frame.ranges, eyeM, this.originM, this.holdbacks);
   }

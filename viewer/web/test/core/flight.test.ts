@@ -41,7 +41,8 @@ function shownTiles({cut, ranges, holdbacks, eye}: Frame): {originM: Vec3; tiles
   const held = holdbacks.map((hold) => holdbackUniform(hold, originM));
   const tiles = cut.map((tile) => {
     const {origin, positions, toTargets, indices} = stored.get(tile.key)!;
-    const place = {level: tile.level, origin, stepM: tileset.levels[tile.level]!.stepM};
+    const {stepM, morphShare} = tileset.levels[tile.level]!;
+    const place = {level: tile.level, origin, stepM, morphShare};
     const uniforms = morphUniforms(place, ranges, eyeM, originM, held);
     return {tile, positions, toTargets, indices, uniforms};
   });

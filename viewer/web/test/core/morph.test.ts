@@ -10,7 +10,8 @@ const kRoot: Vec3 = [16, 16, 8];
 function uniformsAt(origin: Vec3, eye: Vec3, rangeM = 1000): MorphUniforms {
   const originM = renderOrigin(eye, kRoot);
   const eyeM = eye.map((value, k) => value - originM[k]!) as unknown as Vec3;
-  const place = {level: 0, origin, stepM: [0.0625, 0.0625, 0.03125] as Vec3};
+  const stepM: Vec3 = [0.0625, 0.0625, 0.03125];
+  const place = {level: 0, origin, stepM, morphShare: 0.25};
   return morphUniforms(place, [rangeM], eyeM, originM);
 }
 
@@ -28,7 +29,8 @@ describe('shownPlace', () => {
       const eye: Vec3 = [1e5 * random(), 1e5 * random(), 1e4 + 1e4 * random()];
       const fine = uniformsAt(origin, eye, 10);
       const originM = renderOrigin(eye, kRoot);
-      const coarseTile = {level: 1, origin: coarseOrigin, stepM: [0.125, 0.125, 0.0625] as Vec3};
+      const stepM: Vec3 = [0.125, 0.125, 0.0625];
+      const coarseTile = {level: 1, origin: coarseOrigin, stepM, morphShare: 0.25};
       const coarseLocal = coarse.map((v, k) => v - coarseOrigin[k]!) as unknown as Vec3;
       const still = morphUniforms(coarseTile, [10], fine.eyeM, originM);
       expect(shownPlace(local, toTarget, fine)).toEqual(shownPlace(coarseLocal, [3, 1, 2], still));
@@ -66,7 +68,7 @@ describe('morphFactor', () => {
 
   it('is 0 everywhere for a level without a range', () => {
     const uniforms = morphUniforms(
-      {level: 3, origin: [0, 0, 0], stepM: [1, 1, 1]},
+      {level: 3, origin: [0, 0, 0], stepM: [1, 1, 1], morphShare: 0.25},
       [1, 2, 3],
       [0, 0, 0],
       [0, 0, 0],

@@ -18,6 +18,7 @@ export function quadtree(top: number, isThere: (id: Id) => boolean = () => true)
     toleranceM: 2 ** level,
     stepM: [0.125, 0.125, 0.125].map((step) => step * 2 ** level) as unknown as Vec3,
     diagonalM: Math.hypot(kLeafM * 2 ** level, kLeafM * 2 ** level, 2 * kHalfHeightM),
+    morphShare: 0.25,
   }));
   return {
     root: makeTile(null, {level: top, x: 0, y: 0}, isThere),

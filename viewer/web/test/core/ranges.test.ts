@@ -1,7 +1,7 @@
 import {describe, expect, it} from 'vitest';
 import {
-  kMorphShare,
   morphInterval,
+  morphShareOf,
   pixelsPerRadian,
   reducedRanges,
   wantedRanges,
@@ -14,11 +14,12 @@ import {randomSource} from './random';
 
 /** Ladders and boxes without any regularity but growth. */
 function randomLevels(random: () => number): Level[] {
+  const morphShare = morphShareOf(1 + Math.floor(4 * random()));
   let [toleranceM, diagonalM] = [0.1 + random(), 100 + 1000 * random()];
   return [...Array(2 + Math.floor(8 * random())).keys()].map((level) => {
     toleranceM *= 1.05 + 3 * random();
     diagonalM *= 1.1 + 2 * random();
-    return {level, toleranceM, diagonalM, stepM: [1, 1, 1] as const};
+    return {level, toleranceM, diagonalM, morphShare, stepM: [1, 1, 1] as const};
   });
 }
 
@@ -29,7 +30,7 @@ const kWithin = Array<number>(20).fill(0);
 function expectTight(levels: readonly Level[], ranges: Ranges) {
   for (let l = 0; l + 1 < ranges.length; ++l) {
     if (ranges[l] === 0) continue;
-    expect(ranges[l]! + levels[l + 1]!.diagonalM).toBeLessThan((1 - kMorphShare) * ranges[l + 1]!);
+    expect(ranges[l]! + levels[l + 1]!.diagonalM).toBeLessThan((1 - levels[l + 1]!.morphShare) * ranges[l + 1]!);
   }
 }
 
@@ -53,14 +54,19 @@ describe('wantedRanges', () => {
     }
   });
 
-  it('is the error alone where boxes are small', () => {
-    const levels = [1, 2, 4].map((toleranceM, level) => ({
+  it.each([1, 2, 3, 4])('is the error alone where boxes are small, %i levels to an octave', (k) => {
+    // 0.25 / k leaves this much of a range for the boxes of the next level
+    const roomShare = (1 - 0.25 / k) * 2 ** (1 / k) - 1;
+    expect(roomShare).toBeGreaterThan(0.1);
+    const levels = [...Array(9).keys()].map((level) => ({
       level,
-      toleranceM,
-      diagonalM: 1e-6,
+      toleranceM: 2 ** (level / k),
+      diagonalM: 0.95 * roomShare * 250 * 2 ** (level / k),
+      morphShare: morphShareOf(k),
       stepM: [1, 1, 1] as const,
     }));
-    expect(wantedRanges(levels, 500, 2, kWithin)).toEqual([500, 1000]);
+    const forError = levels.slice(1).map(({toleranceM}) => (toleranceM * 500) / 2);
+    expect(wantedRanges(levels, 500, 2, kWithin)).toEqual(forError);
   });
 });
 
@@ -137,7 +143,7 @@ describe('reducedRanges', () => {
 
 describe('morphInterval', () => {
   it('ends below the range, so that float32 distances from it on are at t = 1', () => {
-    const {beginM, endM} = morphInterval(1000);
+    const {beginM, endM} = morphInterval(1000, 0.25);
     expect(beginM).toBe(750);
     expect(endM).toBeLessThan(1000 * (1 - 1e-4));
     expect(endM).toBeGreaterThan(beginM);

@@ -22,7 +22,7 @@ function drawn(level: number, x: number, y: number, ranges: number[], change = (
   const stored = structuredClone(makeTile(level, x, y)) as unknown as Stored;
   change(stored);
   const step = 2 ** level / 16;
-  const place = {level, origin: stored.origin, stepM: [step, step, step] as Vec3};
+  const place = {level, origin: stored.origin, stepM: [step, step, step] as Vec3, morphShare: 0.25};
   const tile: DrawnTile = {
     ...stored,
     octave: level,

@@ -80,10 +80,10 @@ describe('selectTiles', () => {
           if (fine.level + 1 !== coarse.level || !areNeighbours(fine, coarse)) continue;
           for (const corner of sharedCorners(fine, coarse)) {
             const distanceM = shownDistance(corner, eye, holdbacks);
-            const {endM} = morphInterval(ranges[fine.level]!);
+            const {endM} = morphInterval(ranges[fine.level]!, 0.25);
             expect(distanceM).toBeGreaterThan(endM);
             const above = ranges[coarse.level];
-            if (above) expect(distanceM).toBeLessThan(morphInterval(above).beginM);
+            if (above) expect(distanceM).toBeLessThan(morphInterval(above, 0.25).beginM);
             ++corners;
           }
         }
