@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Builds tiles, serves them with `terrane serve` and looks at them with a headless Chromium.
 
-What is asserted of the page is in viewer/web/test/browser: view.mjs, flight.mjs and looks.mjs. Ends
-with 77 (skipped) where Chromium, Node, the viewer or the DEM is missing.
+What is asserted of the page is in viewer/web/test/browser: view.mjs, flight.mjs, looks.mjs and
+archive.mjs. Ends with 77 (skipped) where Chromium, Node, the viewer or the DEM is missing.
 """
 
 import argparse
@@ -83,7 +83,10 @@ def main():
         checks = [["view.mjs", "--screenshot", options.work / "screenshot.png", "--steps", "12"],
                   ["flight.mjs", "--cameras", "6", "--flight", "20", "--steps", "5"]]
         if options.terrain == "caldera":
-            checks.append(["looks.mjs", "--images", IMAGES])
+            archive = options.work / "caldera.pmtiles"
+            subprocess.run([options.terrane, "pack", tiles, "-o", archive], check=True)
+            checks += [["looks.mjs", "--images", IMAGES],
+                       ["archive.mjs", "--archive", archive, "--dist", options.viewer_built]]
         codes = [subprocess.run(["node", BROWSER / script, "--url", url, *rest]).returncode
                  for script, *rest in checks]
         return max(codes)

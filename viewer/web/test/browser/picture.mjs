@@ -106,6 +106,20 @@ export function keepPicture(page, name) {
   }, name);
 }
 
+/** All bytes of the canvas, as it is now. */
+export async function readPixels(page) {
+  await keepPicture(page, 'pixels');
+  const base64 = await page.evaluate(async () => {
+    const url = await new Promise((resolve) => {
+      const reader = new FileReader();
+      reader.onload = () => resolve(reader.result);
+      reader.readAsDataURL(new Blob([window.kept.pixels]));
+    });
+    return url.split(',')[1];
+  });
+  return Buffer.from(base64, 'base64');
+}
+
 /** Mean and largest difference of two kept pictures, in steps of 255. */
 export function differenceOf(page, a, b) {
   return page.evaluate(

@@ -12,7 +12,7 @@ const kTypes = {
 };
 
 /**
- * Serves folders on 127.0.0.1, at any free port; for tests only.
+ * Serves folders and ranges of files on 127.0.0.1, at any free port; for tests only.
  *
  * @param folders the first one that has a file answers
  * @returns {Promise<{url: string, close: () => void}>}
@@ -34,8 +34,17 @@ async function answer(folders, request, response) {
     const file = join(folder, name);
     const found = await stat(file).catch(() => undefined);
     if (!found?.isFile()) continue;
-    response.writeHead(200, {'content-type': kTypes[extname(file)] ?? 'application/octet-stream'});
-    createReadStream(file).pipe(response);
+    const headers = {'content-type': kTypes[extname(file)] ?? 'application/octet-stream'};
+    const asked = /^bytes=(\d+)-(\d+)$/.exec(request.headers.range ?? '');
+    if (!asked) {
+      response.writeHead(200, headers);
+      createReadStream(file).pipe(response);
+      return;
+    }
+    const [start, end] = [Number(asked[1]), Math.min(Number(asked[2]), found.size - 1)];
+    const range = `bytes ${start}-${end}/${found.size}`;
+    response.writeHead(206, {...headers, 'content-range': range});
+    createReadStream(file, {start, end}).pipe(response);
     return;
   }
   response.writeHead(404).end();
