@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <optional>
 #include <thread>
 
 #include "core/errors.h"
@@ -64,6 +65,11 @@ Axes axes_of(const WorldFrame& world, const Window& window) {
   return axes;
 }
 
+std::optional<PlanMap> plan_of(const Georeference& place, GridShape shape) {
+  if (place.crs_wkt().empty()) return std::nullopt;
+  return fit_plan_map(place, shape);
+}
+
 class Build {
  public:
   Build(const HeightSource& heights, const Georeference& place, const HeightStatistics& statistics,
@@ -80,6 +86,7 @@ class Build {
         data_set_{.shape = heights.shape(),
                   .heights = statistics,
                   .crs_wkt = place.crs_wkt(),
+                  .plan = plan_of(place, heights.shape()),
                   .tile_cells = options.tile_cells,
                   .levels_per_octave = options.levels_per_octave,
                   .tolerance_m = {},

@@ -129,6 +129,15 @@ ordered_json frame_json(const WorldFrame& world) {
           {"latitude_deg", world.origin().latitude_deg}};
 }
 
+ordered_json plan_json(const PlanMap& plan) {
+  return {{"degree", plan.degree},
+          {"middle_deg", {plan.middle.longitude_deg, plan.middle.latitude_deg}},
+          {"half_deg", {plan.half.longitude_deg, plan.half.latitude_deg}},
+          {"x", plan.x},
+          {"y", plan.y},
+          {"max_error", plan.max_error}};
+}
+
 }  // namespace
 
 std::vector<OutputFile> tileset_files(const DataSet& data_set, const Pyramid& pyramid,
@@ -174,6 +183,7 @@ std::string terrane_json(const DataSet& data_set, const Lattice& lattice, const 
                  {"fingerprint", data_set.heights.fingerprint},
                  {"crs_wkt", data_set.crs_wkt}};
   json["frame"] = frame_json(world);
+  if (data_set.plan) json["plan"] = plan_json(*data_set.plan);
   json["tile_cells"] = data_set.tile_cells;
   json["levels_per_octave"] = data_set.levels_per_octave;
   json["tilesets"] = {{"kind", data_set.format.is_implicit ? "implicit" : "explicit"},

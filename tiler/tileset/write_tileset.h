@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "core/height_statistics.h"
 #include "tiler/pyramid.h"
 #include "tiler/tile/lattice.h"
+#include "tiler/tile/plan_map.h"
 #include "tiler/tile/tile_mesh.h"
 #include "tiler/tile/world_frame.h"
 #include "tiler/tile_format.h"
@@ -18,6 +20,7 @@ struct DataSet {
   GridShape shape;
   HeightStatistics heights;
   std::string crs_wkt;
+  std::optional<PlanMap> plan;  ///< to the plan of the CRS; none if it is WGS84 or there is no CRS
   std::int64_t tile_cells = 64;
   int levels_per_octave = 1;
   std::vector<double> tolerance_m;  ///< of each level

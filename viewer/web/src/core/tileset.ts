@@ -1,6 +1,7 @@
 // Reads tileset.json and terrane.json (docs/formats.md) into a tree of tiles.
 import {diagonal, type Box} from './box';
 import type {TangentPlane} from './geodetic';
+import {parsePlan, type PlanJson, type PlanMap} from './plan_map';
 import {morphShareOf} from './ranges';
 import type {Vec3} from './vec3';
 
@@ -67,6 +68,8 @@ export interface Tileset {
   /** World z is height less plan distance squared / (2 R); false: world z is height. */
   readonly curved: boolean;
   readonly frame: Frame;
+  /** To the DEM's own CRS, if that is another one than longitude and latitude. */
+  readonly plan?: PlanMap | undefined;
   /** Whom to thank for the data; empty if the files do not say. */
   readonly attribution: string;
 }
@@ -91,6 +94,11 @@ export interface TileJson {
   };
 }
 
+interface TilesetJson {
+  asset?: {extras?: {copyright?: string}};
+  root?: TileJson;
+}
+
 interface LevelJson {
   level: number;
   tolerance_m: number;
@@ -102,7 +110,14 @@ interface TerraneJson {
   format?: string;
   tile_cells: number;
   levels_per_octave?: number;
-  dem: {columns: number; rows: number; min_height_m: number; max_height_m: number};
+  dem: {
+    columns: number;
+    rows: number;
+    min_height_m: number;
+    max_height_m: number;
+    crs_wkt?: string;
+  };
+  plan?: PlanJson;
   frame: {kind: string; longitude_deg?: number; latitude_deg?: number; x?: number; y?: number};
   levels: LevelJson[];
 }
@@ -117,7 +132,7 @@ interface TerraneJson {
  */
 export function parseTileset(tileset: unknown, terrane: unknown, baseUrl: string): Tileset {
   const description = terrane as TerraneJson;
-  const rootJson = (tileset as {root?: TileJson}).root;
+  const rootJson = (tileset as TilesetJson).root;
   if (!rootJson) throw new TilesetError(`${baseUrl}: no "root". Is this a 3D Tiles tileset?`);
   if (!description.format?.startsWith('terrane/1')) {
     throw new TilesetError(`terrane.json beside ${baseUrl}: format is not terrane/1`);
@@ -137,7 +152,8 @@ export function parseTileset(tileset: unknown, terrane: unknown, baseUrl: string
     cellM: smallestCell(root.box, description.dem),
     curved: description.frame.kind === 'enu',
     frame: parseFrame(description.frame),
-    attribution: (tileset as {asset?: {copyright?: string}}).asset?.copyright ?? '',
+    plan: parsePlan(description.plan, description.dem.crs_wkt ?? ''),
+    attribution: (tileset as TilesetJson).asset?.extras?.copyright ?? '',
   };
 }
 

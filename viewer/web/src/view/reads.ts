@@ -1,13 +1,14 @@
 // What the page says of the place under the cursor: position, height and how exact it is.
 import {toGeodetic} from '../core/geodetic';
+import {toPlan} from '../core/plan_map';
 import {lengthText, roundBelow} from '../core/round_numbers';
 import type {SurfacePoint} from '../core/surface';
-import type {Frame} from '../core/tileset';
+import type {Frame, Tileset} from '../core/tileset';
 import type {Vec3} from '../core/vec3';
 import {element} from './page';
 
-/** Longitude, latitude and height; or the plan of a DEM without a CRS. */
-export function placeText({place, errorM}: SurfacePoint, frame: Frame): string {
+/** Longitude, latitude, height, and the plan of the DEM's CRS. */
+export function placeText({place, errorM}: SurfacePoint, {frame, plan}: Tileset): string {
   const bound = errorM < 10 ? errorM.toFixed(1) : errorM.toFixed(0);
   if (frame.kind === 'local') {
     const [x, y] = [place[0] + frame.x, place[1] + frame.y];
@@ -16,10 +17,17 @@ export function placeText({place, errorM}: SurfacePoint, frame: Frame): string {
   const {longitudeDeg, latitudeDeg, heightM} = toGeodetic(place, frame);
   const degrees = (deg: number, [more, less]: string) =>
     `${Math.abs(deg).toFixed(5)}° ${deg < 0 ? less : more}`;
+  const [x, y] = plan ? toPlan(plan, longitudeDeg, latitudeDeg) : [0, 0];
   return (
     `${degrees(latitudeDeg, 'NS')}, ${degrees(longitudeDeg, 'EW')}, ` +
-    `${heightM.toFixed(1)} m ± ${bound} m`
+    `${heightM.toFixed(1)} m ± ${bound} m` +
+    (plan ? ` · ${plan.name}: ${planText(x, plan.unit)}, ${planText(y, plan.unit)}` : '')
   );
+}
+
+function planText(value: number, unit: string): string {
+  if (unit === 'degree') return value.toFixed(5);
+  return value.toFixed(1) + (unit === 'metre' ? '' : ` ${unit}`);
 }
 
 /** The height of a world place. */

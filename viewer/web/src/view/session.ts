@@ -115,7 +115,7 @@ export class Session {
 
   private showCursor(): void {
     const point = this.cursor && this.viewer.pick(this.cursor.right, this.cursor.up);
-    element('cursor').textContent = point ? placeText(point, this.tileset.frame) : '';
+    element('cursor').textContent = point ? placeText(point, this.tileset) : '';
   }
 
   private bindTools(): void {
