@@ -38,11 +38,13 @@ void override_with(const std::optional<From>& given, To& setting) {
 
 /// Options that would be of no effect.
 void refuse_native_options(const BuildCommand& command, const BuildSettings& settings) {
-  const char* const useless = command.tile_cells               ? "--tile-cells"
-                              : command.levels_per_octave      ? "--levels-per-octave"
-                              : command.effort                 ? "--effort"
-                              : !settings.drape.images.empty() ? "--texture"
-                                                               : nullptr;
+  const char* const useless = command.tile_cells                 ? "--tile-cells"
+                              : command.levels_per_octave        ? "--levels-per-octave"
+                              : command.effort                   ? "--effort"
+                              : !settings.features.lines.empty() ? "--lines"
+                              : settings.features.water_height_m ? "--water-height"
+                              : !settings.drape.images.empty()   ? "--texture"
+                                                                 : nullptr;
   if (useless == nullptr) return;
   throw ConfigError(
       fmt::format("{}: is for --scheme native alone. Leave it away, or add that", useless));
@@ -53,6 +55,7 @@ BuildSettings resolve(const BuildCommand& command) {
   if (!command.config.empty()) read_settings(command.config, settings);
   if (!command.dem.dem.empty()) settings.dem = command.dem.dem;
   apply(command.dem, settings.ingest);
+  apply(command.dem, settings.features);
   override_with(command.tolerance_m, settings.build.tolerance_m);
   override_with(command.tile_cells, settings.build.tile_cells);
   override_with(command.levels_per_octave, settings.build.levels_per_octave);
@@ -91,13 +94,17 @@ void run(const BuildCommand& command, const CommonOptions& common) {
   BuildSettings settings = resolve(command);
   const auto progress = make_progress(common.quiet);
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, *progress);
+  if (!settings.geodetic.is_geodetic()) {
+    settings.build.features = read_features(settings, *dem, *progress);
+  }
   const auto texture = open_texture(settings.drape, *dem);
   settings.build.texture = texture.get();
   const HeightStatistics statistics = ingest::scan_heights(*dem, *progress);
   tiler::OutputFolder(command.out).claim(command.force);
   if (settings.geodetic.is_geodetic()) {
     const tiler::BuildResult result =
-        build_geodetic(*dem, statistics, settings.geodetic, settings.build, command.out, *progress);
+        build_geodetic(*dem, statistics, settings.geodetic, settings.features.water, settings.build,
+                       command.out, *progress);
     // not before: a run that is killed while it resamples leaves nothing in the folder
     tiler::write_whole_file(command.out / "build.toml", to_toml(settings));
     report(result, command.out);
@@ -128,6 +135,7 @@ void add_build_command(CLI::App& app, const CommonOptions& common) {
   build->add_option("--effort", command->effort,
                     "0 to 3: more time for fewer triangles of the finest level within the same "
                     "tolerance [1]");
+  add_feature_options(*build, command->dem);
   add_geodetic_options(*build, command->geodetic);
   build->add_option("--jobs", command->jobs, "Threads; 0: one per core [0]");
   add_tile_options(*build, command->tiles);

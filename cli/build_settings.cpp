@@ -99,8 +99,12 @@ const std::map<std::string, Reader>& readers() {
        [](const Setting& s, BuildSettings& to) { to.geodetic.max_zoom = s.whole_number(); }},
       {"geodetic.fill_m",
        [](const Setting& s, BuildSettings& to) { to.geodetic.fill_m = s.real_number(); }},
-      {"geodetic.water",
-       [](const Setting& s, BuildSettings& to) { to.geodetic.water = s.texts(); }},
+      {"features.lines",
+       [](const Setting& s, BuildSettings& to) { to.features.lines = s.texts(); }},
+      {"features.water",
+       [](const Setting& s, BuildSettings& to) { to.features.water = s.texts(); }},
+      {"features.water_height_m",
+       [](const Setting& s, BuildSettings& to) { to.features.water_height_m = s.real_number(); }},
       {"build.jobs", [](const Setting& s, BuildSettings& to) { to.build.jobs = s.whole_number(); }},
       {"tiles.implicit",
        [](const Setting& s, BuildSettings& to) { to.build.format.is_implicit = s.truth(); }},
@@ -164,7 +168,17 @@ std::string geodetic_toml(const GeodeticSettings& settings) {
   if (!settings.geoid.empty()) text += "geoid = " + quoted(settings.geoid) + "\n";
   if (settings.max_zoom) text += fmt::format("max_zoom = {}\n", *settings.max_zoom);
   text += fmt::format("fill_m = {}\n", settings.fill_m);
-  if (!settings.water.empty()) text += "water = " + list_of(settings.water) + "\n";
+  return text;
+}
+
+std::string features_toml(const ingest::FeatureOptions& features) {
+  if (features.empty()) return "";
+  std::string text = "\n[features]\n";
+  if (!features.lines.empty()) text += "lines = " + list_of(features.lines) + "\n";
+  if (!features.water.empty()) text += "water = " + list_of(features.water) + "\n";
+  if (features.water_height_m) {
+    text += fmt::format("water_height_m = {}\n", *features.water_height_m);
+  }
   return text;
 }
 
@@ -191,6 +205,13 @@ void read_settings(const std::filesystem::path& file, BuildSettings& settings) {
   }
 }
 
+GridFeatures read_features(const BuildSettings& settings, ingest::Dem& dem, Progress& progress) {
+  ingest::FeatureOptions options = settings.features;
+  options.plan_tolerance_m = settings.build.tolerance_m;
+  options.is_rounded = true;
+  return ingest::read_features(dem, options, progress);
+}
+
 std::string to_toml(const BuildSettings& settings) {
   std::string text =
       "# Written by terrane build. Repeat with: terrane build --config THIS -o OUT\n";
@@ -210,6 +231,7 @@ std::string to_toml(const BuildSettings& settings) {
     text += "scheme = " + quoted(settings.geodetic.scheme) +
             "\nformat = " + quoted(settings.geodetic.format) + "\n";
   }
+  text += features_toml(settings.features);
   text += "\n[tiles]\n" + to_toml(settings.build.format);
   if (!settings.drape.images.empty()) {
     text += fmt::format("texture = {}\ntexture_format = \"{}\"\n", list_of(settings.drape.images),

@@ -7,6 +7,7 @@
 #include "cli/geodetic_build.h"
 #include "ingest/dem.h"
 #include "ingest/drape.h"
+#include "ingest/features.h"
 #include "tiler/build.h"
 
 namespace terrane::cli {
@@ -15,6 +16,7 @@ namespace terrane::cli {
 struct BuildSettings {
   std::vector<std::string> dem;
   ingest::OpenOptions ingest;
+  ingest::FeatureOptions features;
   ingest::DrapeOptions drape;
   tiler::BuildOptions build;
   GeodeticSettings geodetic;
@@ -24,6 +26,10 @@ struct BuildSettings {
 /// \throws ConfigError that names file, line and key, for an unknown key, a value of the wrong type
 ///         or out of range; InputError if the file cannot be read.
 void read_settings(const std::filesystem::path& file, BuildSettings& settings);
+
+/// Reads the lines and the water of a native build; the DEM's samples in water are at its height
+/// from then on.
+GridFeatures read_features(const BuildSettings& settings, ingest::Dem& dem, Progress& progress);
 
 /// The settings as TOML from which the same output can be built again: less `jobs`, which does not
 /// change it, and with full paths.

@@ -36,7 +36,8 @@ void add_feature_options(CLI::App& command, DemOptions& options) {
                      "Lines that the mesh keeps as edges, within the tolerance in plan: any vector "
                      "file, or FILE:LAYER");
   command.add_option("--water", options.water,
-                     "Polygons whose inside is one flat height and whose shore the mesh keeps");
+                     "Polygons whose inside is one flat height and whose shore the mesh keeps; "
+                     "geodetic: those of the water mask");
   command.add_option("--water-height", options.water_height_m,
                      "Height of the water in metres [the median along its shore]");
 }

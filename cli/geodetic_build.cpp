@@ -49,10 +49,10 @@ struct TemporaryFile {
 };
 
 std::string described(const ingest::Resampling& plan, const GeodeticSettings& settings,
-                      const ingest::Geoid* geoid) {
+                      const std::vector<std::string>& water, const ingest::Geoid* geoid) {
   return fmt::format("zoom {}, {}; no data as {} m; {}; water: {}", plan.tiles.zoom, plan.method,
                      settings.fill_m, geoid == nullptr ? "over the ellipsoid" : geoid->name(),
-                     fmt::join(settings.water, ", "));
+                     fmt::join(water, ", "));
 }
 
 }  // namespace
@@ -72,8 +72,6 @@ void add_geodetic_options(CLI::App& command, GeodeticOptionsGiven& given) {
                      "DEM's]");
   command.add_option("--fill", given.fill_m,
                      "Geodetic: height in metres of what the DEM has no data for [0]");
-  command.add_option("--water", given.water,
-                     "Geodetic: polygons for the water mask: any vector file, or FILE:LAYER");
 }
 
 void apply(const GeodeticOptionsGiven& given, GeodeticSettings& settings) {
@@ -85,7 +83,6 @@ void apply(const GeodeticOptionsGiven& given, GeodeticSettings& settings) {
   if (given.geoid) settings.geoid = *given.geoid;
   if (given.max_zoom) settings.max_zoom = given.max_zoom;
   if (given.fill_m) settings.fill_m = *given.fill_m;
-  if (!given.water.empty()) settings.water = given.water;
 }
 
 void check(const GeodeticSettings& settings) {
@@ -99,11 +96,10 @@ void check(const GeodeticSettings& settings) {
                                   settings.scheme, wanted));
   }
   if (settings.is_geodetic()) return;
-  const char* const useless = !settings.geoid.empty()   ? "--geoid"
-                              : settings.max_zoom       ? "--max-zoom"
-                              : settings.fill_m != 0    ? "--fill"
-                              : !settings.water.empty() ? "--water"
-                                                        : nullptr;
+  const char* const useless = !settings.geoid.empty() ? "--geoid"
+                              : settings.max_zoom     ? "--max-zoom"
+                              : settings.fill_m != 0  ? "--fill"
+                                                      : nullptr;
   if (useless == nullptr) return;
   throw ConfigError(
       fmt::format("{}: is for --scheme geodetic alone. Leave it away, or add that", useless));
@@ -111,6 +107,7 @@ void check(const GeodeticSettings& settings) {
 
 tiler::BuildResult build_geodetic(const ingest::Dem& dem, const HeightStatistics& statistics,
                                   const GeodeticSettings& settings,
+                                  const std::vector<std::string>& water,
                                   const tiler::BuildOptions& build,
                                   const std::filesystem::path& out, Progress& progress) {
   const auto geoid = geoid_of(dem, settings, progress);
@@ -119,11 +116,12 @@ tiler::BuildResult build_geodetic(const ingest::Dem& dem, const HeightStatistics
   const ingest::Resampling plan = ingest::plan_resampling(dem, statistics, options);
   tiler::GeodeticOptions geodetic{.tolerance_m = build.tolerance_m,
                                   .jobs = build.jobs,
-                                  .source = described(plan, settings, geoid.get()),
+                                  .source = described(plan, settings, water, geoid.get()),
                                   .attribution = build.format.attribution};
-  if (!settings.water.empty()) {
-    geodetic.water = [mask = ingest::open_water_mask(settings.water)](double west, double south,
-                                                                      double east, double north) {
+  if (!water.empty()) {
+    const auto mask = ingest::open_water_mask(water);
+    geodetic.water_fingerprint = mask->fingerprint();
+    geodetic.water = [mask](double west, double south, double east, double north) {
       return mask->bytes(west, south, east, north);
     };
   }

@@ -20,7 +20,6 @@ struct GeodeticSettings {
   std::string geoid;  ///< "egm96", a file, "none"; empty: as the DEM says
   std::optional<int> max_zoom;
   double fill_m = 0;
-  std::vector<std::string> water;
 
   bool is_geodetic() const { return scheme == "geodetic"; }
 };
@@ -30,7 +29,6 @@ struct GeodeticOptionsGiven {
   std::optional<std::string> scheme, format, geoid;
   std::optional<int> max_zoom;
   std::optional<double> fill_m;
-  std::vector<std::string> water;
 };
 void add_geodetic_options(CLI::App& command, GeodeticOptionsGiven& given);
 void apply(const GeodeticOptionsGiven& given, GeodeticSettings& settings);
@@ -39,9 +37,11 @@ void apply(const GeodeticOptionsGiven& given, GeodeticSettings& settings);
 void check(const GeodeticSettings& settings);
 
 /// Builds a DEM onto the geodetic quadtree.
+/// \param water  layers of polygons for the water mask.
 /// \pre \p out was claimed.
 tiler::BuildResult build_geodetic(const ingest::Dem& dem, const HeightStatistics& statistics,
                                   const GeodeticSettings& settings,
+                                  const std::vector<std::string>& water,
                                   const tiler::BuildOptions& build,
                                   const std::filesystem::path& out, Progress& progress);
 

@@ -56,6 +56,7 @@ verify::VerifyReport verify_folder(const std::filesystem::path& out, const Verif
   read_settings(out / "build.toml", settings);
   if (!command.dem.empty()) settings.dem = command.dem;
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, progress);
+  read_features(settings, *dem, progress);
   check_same_dem(out, *dem, progress);
   return verify::verify(out, dem->heights(), dem->place(), {.jobs = command.jobs}, progress);
 }

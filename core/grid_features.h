@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/georeference.h"
@@ -20,12 +23,24 @@ struct FeatureLine {
   std::optional<double> height_m;  ///< of all its points (a shore); else they lie on the terrain
 };
 
+/// Samples first to last of one row, both included, under water.
+struct WaterSpan {
+  std::int64_t first = 0;
+  std::int64_t last = 0;
+  float height_m = 0;
+};
+
+/// The samples under water, row by row. Where spans overlap, the later one tells.
+using WaterRows = std::map<std::int64_t, std::vector<WaterSpan>>;
+
 /// Everything that a user wants kept on one DEM.
 struct GridFeatures {
   std::vector<FeatureLine> lines;
-  double column_m = 1;    ///< largest distance of two samples of a row, in metres
-  double row_m = 1;       ///< largest distance of two samples of a column, in metres
-  double off_plan_m = 0;  ///< at most this far are the lines from where their files have them
+  WaterRows water;
+  double column_m = 1;      ///< largest distance of two samples of a row, in metres
+  double row_m = 1;         ///< largest distance of two samples of a column, in metres
+  double off_plan_m = 0;    ///< at most this far are the lines from where their files have them
+  std::string fingerprint;  ///< of lines and water; empty if there are none
 };
 
 }  // namespace terrane

@@ -7,13 +7,12 @@
 #include <vector>
 
 #include "core/georeference.h"
+#include "core/grid_features.h"
 #include "core/height_source.h"
 #include "core/progress.h"
 #include "ingest/vertical_unit.h"
 
 namespace terrane::ingest {
-
-struct WaterBody;
 
 /// What a user says about a DEM; each wins over what its files say.
 struct OpenOptions {
@@ -76,7 +75,7 @@ class Dem {
   const HeightSource& heights() const { return *heights_; }
 
   /// Puts every sample of some water at its height from now on: see water_level.h.
-  void level_water(const std::vector<WaterBody>& bodies);
+  void level_water(const WaterRows& water);
   const Georeference& place() const { return *place_; }
 
   /// File name without its folders, or "a.tif and 1 more".

@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "core/errors.h"
+#include "ingest/fingerprint.h"
 #include "ingest/gdal_scope.h"
 #include "ingest/grid_line.h"
 #include "ingest/layer_place.h"
+#include "ingest/separate_lines.h"
 #include "ingest/vector_layer.h"
 #include "ingest/water_level.h"
 
@@ -20,14 +22,24 @@ constexpr double kShareOfSimplification = 0.25;
 constexpr double kShareOfSnapping = 0.125;
 constexpr double kMostSnap_cells = 1.0 / 256;
 
+// where places are rounded: lines lie on parts of cells this wide, and stay apart by half of that.
+// The lattice's steps are a sixteenth of the tolerance and 1/477 cell at most
+// (tiler/tile/lattice.h): two ends of an altitude together are rounded by 1.4 of them, and half a
+// part is 2
+constexpr double kShareOfSimplificationIfRounded = 0.125;
+constexpr double kShareOfPart = 0.25;
+constexpr int kFewestParts = 64;
+constexpr int kMostParts = 4096;
+
 /// How lines come onto the grid within their share of the tolerance.
 struct Laying {
-  double simplify_cells, snap_cells;
+  double simplify_cells;
+  LineRounding rounding;
 
   std::vector<GridPosition> lay(const OGRSimpleCurve& curve) const {
     std::vector<GridPosition> points;
     for (int i = 0; i < curve.getNumPoints(); ++i) points.push_back({curve.getX(i), curve.getY(i)});
-    return points.size() < 2 ? points : lay_on_grid(points, snap_cells);
+    return points.size() < 2 ? points : lay_on_grid(points, rounding);
   }
 
   OGRGeometryUniquePtr simplified(const OGRGeometry& geometry) const {
@@ -81,6 +93,71 @@ void set_height(WaterBody& body, const std::optional<double>& asked_m, const Hei
   body.height_m = static_cast<float>(*height_m);
 }
 
+/// Least distance of lines and samples: half of what places are apart.
+double gap_m(const LineRounding& rounding, const GridFeatures& features) {
+  return std::min(features.column_m / rounding.column_parts, features.row_m / rounding.row_parts) /
+         2;
+}
+
+int parts_of(double cell_m, double tolerance_m) {
+  const double parts = std::ceil(cell_m / (kShareOfPart * tolerance_m));
+  return static_cast<int>(std::clamp<double>(parts, kFewestParts, kMostParts));
+}
+
+/// How lines are laid, and in \p features how far they come to lie off their place by that.
+Laying laying_of(const FeatureOptions& options, GridFeatures& features) {
+  const double column_m = features.column_m, row_m = features.row_m;
+  const double larger_m = std::max(column_m, row_m);
+  const double tolerance_cells = options.plan_tolerance_m / larger_m;
+  if (!options.is_rounded) {
+    const Laying laying{
+        kShareOfSimplification * tolerance_cells,
+        {.snap_cells = std::min(kShareOfSnapping * tolerance_cells, kMostSnap_cells)}};
+    const double rounded_cells = laying.rounding.snap_cells + 0.5 / kLinePartsPerCell;
+    features.off_plan_m =
+        laying.simplify_cells * larger_m + rounded_cells * std::hypot(column_m, row_m);
+    return laying;
+  }
+  const Laying laying{kShareOfSimplificationIfRounded * tolerance_cells,
+                      {.column_parts = parts_of(column_m, options.plan_tolerance_m),
+                       .row_parts = parts_of(row_m, options.plan_tolerance_m)}};
+  features.off_plan_m =
+      laying.simplify_cells * larger_m +
+      std::hypot(column_m / laying.rounding.column_parts, row_m / laying.rounding.row_parts) / 2 +
+      gap_m(laying.rounding, features);
+  return laying;
+}
+
+void keep_apart(const Laying& laying, std::vector<WaterBody>& bodies, GridFeatures& features) {
+  std::vector<std::vector<GridPosition>*> lines;
+  for (WaterBody& body : bodies) {
+    for (auto& shore : body.shores) lines.push_back(&shore);
+  }
+  for (FeatureLine& line : features.lines) lines.push_back(&line.points);
+  separate_lines(lines, {features.column_m, features.row_m}, gap_m(laying.rounding, features));
+}
+
+std::string fingerprint_of(const GridFeatures& features) {
+  Fingerprint fingerprint;
+  for (const FeatureLine& line : features.lines) {
+    fingerprint.add(static_cast<std::uint64_t>(line.points.size()));
+    for (const GridPosition& p : line.points) {
+      fingerprint.add(p.column);
+      fingerprint.add(p.row);
+    }
+    fingerprint.add(line.height_m.value_or(NAN));
+  }
+  for (const auto& [row, spans] : features.water) {
+    for (const WaterSpan& span : spans) {
+      for (const std::int64_t number : {row, span.first, span.last}) {
+        fingerprint.add(static_cast<std::uint64_t>(number));
+      }
+      fingerprint.add(static_cast<double>(span.height_m));
+    }
+  }
+  return fingerprint.hex();
+}
+
 }  // namespace
 
 GridFeatures read_features(Dem& dem, const FeatureOptions& options, Progress& progress) {
@@ -91,13 +168,7 @@ GridFeatures read_features(Dem& dem, const FeatureOptions& options, Progress& pr
   const GridSpacing spacing = largest_spacing(dem.place(), shape);
   features.column_m = spacing.column_m;
   features.row_m = spacing.row_m;
-  const double larger_m = std::max(spacing.column_m, spacing.row_m);
-  const double tolerance_cells = options.plan_tolerance_m / larger_m;
-  const Laying laying{kShareOfSimplification * tolerance_cells,
-                      std::min(kShareOfSnapping * tolerance_cells, kMostSnap_cells)};
-  const double rounded_cells = laying.snap_cells + 0.5 / kLinePartsPerCell;
-  features.off_plan_m = laying.simplify_cells * larger_m +
-                        rounded_cells * std::hypot(spacing.column_m, spacing.row_m);
+  const Laying laying = laying_of(options, features);
 
   std::vector<WaterBody> bodies;
   for (const std::string& source : options.water) {
@@ -105,7 +176,6 @@ GridFeatures read_features(Dem& dem, const FeatureOptions& options, Progress& pr
     place_on_grid(layer, dem.place(), shape);
     for (WaterBody& body : bodies_of(layer, laying)) {
       set_height(body, options.water_height_m, dem.heights(), source);
-      for (const auto& shore : body.shores) features.lines.push_back({shore, body.height_m});
       progress.note(fmt::format("{}: water at {:.3f} m, {} shores", source, body.height_m,
                                 body.shores.size()));
       bodies.push_back(std::move(body));
@@ -116,7 +186,15 @@ GridFeatures read_features(Dem& dem, const FeatureOptions& options, Progress& pr
     place_on_grid(layer, dem.place(), shape);
     add_lines(layer, laying, features);
   }
-  if (!bodies.empty()) dem.level_water(bodies);
+  if (options.is_rounded) keep_apart(laying, bodies, features);
+  std::vector<FeatureLine> shores;
+  for (const WaterBody& body : bodies) {
+    for (const auto& shore : body.shores) shores.push_back({shore, body.height_m});
+  }
+  features.lines.insert(features.lines.begin(), shores.begin(), shores.end());
+  features.water = water_rows(bodies, shape);
+  features.fingerprint = fingerprint_of(features);
+  if (!bodies.empty()) dem.level_water(features.water);
   return features;
 }
 

@@ -17,7 +17,10 @@ struct FeatureOptions {
   std::vector<std::string> lines;        ///< of lines; of polygons, their rims
   std::vector<std::string> water;        ///< of polygons
   std::optional<double> water_height_m;  ///< of every water; else that of its shore samples
-  double plan_tolerance_m = 1;           ///< lines may be simplified by a quarter of this
+  double plan_tolerance_m = 1;           ///< lines may be simplified by a part of this
+  /// Of a mesh whose places are rounded to a lattice: lines stay away from samples and from each
+  /// other by about an eighth of the tolerance, so that no triangle between them turns over.
+  bool is_rounded = false;
 
   bool empty() const { return lines.empty() && water.empty(); }
 };

@@ -8,10 +8,12 @@
 namespace terrane::ingest {
 namespace {
 
-double laid(double value, double snap_cells) {
+double laid(double value, double snap_cells, int parts) {
   const double line = std::round(value);
   if (std::abs(value - line) <= snap_cells) return line;
-  return std::round(value * kLinePartsPerCell) / kLinePartsPerCell;
+  const double cell = std::floor(value);
+  const double in_cell = std::round((value - cell) * parts) / parts;
+  return cell + std::round(in_cell * kLinePartsPerCell) / kLinePartsPerCell;
 }
 
 /// Where, from 0 to 1, a coordinate passes whole numbers on its way from a to b.
@@ -22,10 +24,12 @@ void add_crossings(double a, double b, std::vector<double>& at) {
 
 }  // namespace
 
-std::vector<GridPosition> lay_on_grid(std::span<const GridPosition> line, double snap_cells) {
+std::vector<GridPosition> lay_on_grid(std::span<const GridPosition> line,
+                                      const LineRounding& rounding) {
   std::vector<GridPosition> result;
   const auto add = [&](double column, double row) {
-    const GridPosition next{laid(column, snap_cells), laid(row, snap_cells)};
+    const GridPosition next{laid(column, rounding.snap_cells, rounding.column_parts),
+                            laid(row, rounding.snap_cells, rounding.row_parts)};
     const bool is_new =
         result.empty() || result.back().column != next.column || result.back().row != next.row;
     if (is_new) result.push_back(next);

@@ -78,8 +78,8 @@ Dem::Dem(std::string name, DemDescription description, std::vector<SuspectHeight
       heights_(std::move(heights)),
       place_(std::move(place)) {}
 
-void Dem::level_water(const std::vector<WaterBody>& bodies) {
-  heights_ = ingest::level_water(std::move(heights_), bodies);
+void Dem::level_water(const WaterRows& water) {
+  heights_ = ingest::level_water(std::move(heights_), water);
 }
 
 std::unique_ptr<Dem> open_dem(const std::vector<std::string>& sources, const OpenOptions& options,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace terrane::ingest {
 namespace {
@@ -53,19 +52,8 @@ bool holds(const std::vector<RowSpan>& spans, std::int64_t column) {
 
 class LevelledWater final : public HeightSource {
  public:
-  LevelledWater(std::unique_ptr<HeightSource> heights, const std::vector<WaterBody>& bodies)
-      : heights_(std::move(heights)) {
-    const GridShape shape = heights_->shape();
-    for (const WaterBody& body : bodies) {
-      const Reach reach = reach_of(body);
-      for (std::int64_t row = std::max<std::int64_t>(0, reach.first_row);
-           row <= std::min(reach.last_row, shape.rows - 1); ++row) {
-        for (const RowSpan& span : samples_inside(body, row)) {
-          rows_[row].push_back({span, static_cast<float>(body.height_m)});
-        }
-      }
-    }
-  }
+  LevelledWater(std::unique_ptr<HeightSource> heights, WaterRows water)
+      : heights_(std::move(heights)), rows_(std::move(water)) {}
 
   GridShape shape() const override { return heights_->shape(); }
 
@@ -73,25 +61,21 @@ class LevelledWater final : public HeightSource {
     HeightGrid grid = heights_->read(window);
     for (auto at = rows_.lower_bound(window.row);
          at != rows_.end() && at->first < window.row + window.rows; ++at) {
-      for (const auto& [span, height_m] : at->second) {
+      for (const WaterSpan& span : at->second) {
         const std::int64_t first = std::max(span.first, window.column);
         const std::int64_t last = std::min(span.last, window.column + window.columns - 1);
         if (first > last) continue;
         const auto begin = grid.heights_m.begin() + (at->first - window.row) * window.columns;
-        std::fill(begin + (first - window.column), begin + (last - window.column) + 1, height_m);
+        std::fill(begin + (first - window.column), begin + (last - window.column) + 1,
+                  span.height_m);
       }
     }
     return grid;
   }
 
  private:
-  struct Level {
-    RowSpan span;
-    float height_m;
-  };
-
   std::unique_ptr<HeightSource> heights_;
-  std::map<std::int64_t, std::vector<Level>> rows_;
+  WaterRows rows_;
 };
 
 }  // namespace
@@ -150,9 +134,22 @@ std::optional<double> shore_height_m(const WaterBody& body, const HeightSource& 
   return *middle;
 }
 
-std::unique_ptr<HeightSource> level_water(std::unique_ptr<HeightSource> heights,
-                                          const std::vector<WaterBody>& bodies) {
-  return std::make_unique<LevelledWater>(std::move(heights), bodies);
+WaterRows water_rows(const std::vector<WaterBody>& bodies, const GridShape& shape) {
+  WaterRows rows;
+  for (const WaterBody& body : bodies) {
+    const Reach reach = reach_of(body);
+    for (std::int64_t row = std::max<std::int64_t>(0, reach.first_row);
+         row <= std::min(reach.last_row, shape.rows - 1); ++row) {
+      for (const RowSpan& span : samples_inside(body, row)) {
+        rows[row].push_back({span.first, span.last, static_cast<float>(body.height_m)});
+      }
+    }
+  }
+  return rows;
+}
+
+std::unique_ptr<HeightSource> level_water(std::unique_ptr<HeightSource> heights, WaterRows water) {
+  return std::make_unique<LevelledWater>(std::move(heights), std::move(water));
 }
 
 }  // namespace terrane::ingest

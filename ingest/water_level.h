@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/georeference.h"
+#include "core/grid_features.h"
 #include "core/height_source.h"
 
 namespace terrane::ingest {
@@ -31,8 +32,10 @@ std::vector<RowSpan> samples_inside(const WaterBody& body, std::int64_t row);
 /// \return nothing if all of them hold no data.
 std::optional<double> shore_height_m(const WaterBody& body, const HeightSource& heights);
 
-/// The same DEM with every sample of the bodies, voids too, at the body's height. Later bodies win.
-std::unique_ptr<HeightSource> level_water(std::unique_ptr<HeightSource> heights,
-                                          const std::vector<WaterBody>& bodies);
+/// The samples of a DEM of some shape inside bodies. Later bodies win.
+WaterRows water_rows(const std::vector<WaterBody>& bodies, const GridShape& shape);
+
+/// The same DEM with every sample under water, voids too, at the water's height.
+std::unique_ptr<HeightSource> level_water(std::unique_ptr<HeightSource> heights, WaterRows water);
 
 }  // namespace terrane::ingest

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "core/errors.h"
+#include "ingest/fingerprint.h"
 #include "ingest/gdal_scope.h"
 #include "ingest/layer_place.h"
 #include "ingest/vector_layer.h"
@@ -45,6 +46,16 @@ class PolygonMask final : public WaterMask {
     rasterize(inside, wanted, mask);
     if (std::ranges::all_of(mask, [&](char c) { return c == mask.front(); })) mask.resize(1);
     return mask;
+  }
+
+  std::string fingerprint() const override {
+    Fingerprint fingerprint;
+    for (const OGRGeometryUniquePtr& polygon : polygons_) {
+      std::vector<unsigned char> bytes(polygon->WkbSize());
+      polygon->exportToWkb(wkbNDR, bytes.data());
+      fingerprint.add(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    }
+    return fingerprint.hex();
   }
 
  private:

@@ -20,6 +20,9 @@ class WaterMask {
   /// A cell is water if its middle is. Thread-safe.
   virtual std::string bytes(double west_deg, double south_deg, double east_deg,
                             double north_deg) const = 0;
+
+  /// Changes whenever a polygon does.
+  virtual std::string fingerprint() const = 0;
 };
 
 /// Reads polygons of water.

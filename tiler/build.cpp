@@ -22,6 +22,10 @@
 namespace terrane::tiler {
 namespace {
 
+// between a shore and a sample beside it the ground may be a wall, where what plan is rounded by
+// becomes so much more in height
+constexpr double kStepsPerTolerance = 16, kStepsPerToleranceWithLines = 128;
+
 std::string hash_hex(std::string_view text) {
   std::uint64_t hash = 14695981039346656037U;  // FNV-1a
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
@@ -29,10 +33,10 @@ std::string hash_hex(std::string_view text) {
 }
 
 std::string build_key(const BuildOptions& options, const HeightStatistics& statistics) {
-  return hash_hex(fmt::format("{} {} {} {} {} {} {} {}", TERRANE_GENERATOR, options.tolerance_m,
-                              options.tile_cells, options.levels_per_octave, options.effort,
-                              statistics.fingerprint, key_of(options.format),
-                              options.texture ? options.texture->fingerprint() : ""));
+  return hash_hex(fmt::format(
+      "{} {} {} {} {} {} {} {} {}", TERRANE_GENERATOR, options.tolerance_m, options.tile_cells,
+      options.levels_per_octave, options.effort, statistics.fingerprint, key_of(options.format),
+      options.texture ? options.texture->fingerprint() : "", options.features.fingerprint));
 }
 
 /// Doubles exactly with each octave.
@@ -76,7 +80,8 @@ class Build {
         const BuildOptions& options, const std::filesystem::path& out, Progress& progress)
       : pyramid_(heights.shape(), options.tile_cells, options.levels_per_octave),
         world_(place, heights.shape()),
-        lattice_(pyramid_, world_, statistics, options.tolerance_m),
+        lattice_(pyramid_, world_, statistics, options.tolerance_m,
+                 options.features.lines.empty() ? kStepsPerTolerance : kStepsPerToleranceWithLines),
         source_{heights, world_, pyramid_, lattice_, options.effort},
         is_mirrored_(is_mirrored(world_, heights.shape())),
         folder_(out),
@@ -95,6 +100,9 @@ class Build {
     for (int level = 0; level < pyramid_.level_count(); ++level) {
       data_set_.tolerance_m.push_back(tolerance_of_level_m(options, level));
     }
+    if (options.features.lines.empty()) return;
+    features_.emplace(options.features, pyramid_, lattice_, data_set_.tolerance_m);
+    source_.features = &*features_;
   }
 
   BuildResult run() {
@@ -290,6 +298,7 @@ class Build {
   int jobs_;
   const TextureSource* texture_;
   DataSet data_set_;
+  std::optional<TileFeatures> features_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/georeference.h"
+#include "core/grid_features.h"
 #include "core/height_source.h"
 #include "core/height_statistics.h"
 #include "core/progress.h"
@@ -22,6 +23,9 @@ struct BuildOptions {
   int levels_per_octave = 1;
   /// Time for fewer triangles of level 0, 0 to 3; see hierarchy::StrictOptions::effort.
   int effort = hierarchy::kDefaultEffort;
+  /// Lines that stay edges of every level, within its tolerance of their place in plan, and water;
+  /// laid for rounded places (ingest/features.h). The DEM has its water at one height already.
+  GridFeatures features;
   /// Threads; 0: as many as the machine has cores. Does not change the output.
   int jobs = 0;
   TileFormat format;

@@ -18,6 +18,7 @@
 namespace terrane::tiler {
 namespace {
 
+using hierarchy::BorderPlace;
 using hierarchy::Corners;
 using hierarchy::FinerLevel;
 using hierarchy::Place;
@@ -37,14 +38,14 @@ hierarchy::FieldPoint blend(const hierarchy::FieldPoint& a, const hierarchy::Fie
   return {a.column + t * (b.column - a.column), a.row + t * (b.row - a.row), 0};
 }
 
-/// Edges with a triangle on one side only: both their ends are samples.
+/// Edges with a triangle on one side only.
 std::vector<Edge> rim_of(const std::vector<TerrainVertex>& vertices,
                          const std::vector<Corners>& triangles) {
   std::set<Edge> open;
   for (const Corners& corners : triangles) {
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t from = corners[k], to = corners[(k + 1) % 3];
-      const auto is_inside = [&](std::uint32_t v) { return vertices[v].sample.column < 0; };
+      const auto is_inside = [&](std::uint32_t v) { return vertices[v].border.is_none(); };
       if (is_inside(from) || is_inside(to)) continue;
       if (open.erase({to, from}) == 0) open.insert({from, to});
     }
@@ -76,25 +77,34 @@ class TileBuild {
     return frame_.place(plan, reference_.field().row(row)[column]);
   }
 
+  Place place_line_vertex(const hierarchy::LineVertex& vertex) const {
+    return frame_.place(vertex.plan, frame_.over_datum_m(vertex.plan, vertex.height_m));
+  }
+
   /// Puts the vertices of rim and seams where their samples are written: a function of the sample
-  /// alone, the same in every tile and never by way of the tile's own frame.
-  void fix_rim(TerrainMesh& mesh) const {
-    std::vector<TerrainVertex*> rim;
+  /// alone, the same in every tile and never by way of the tile's own frame. Those that lines
+  /// brought are put so at level 0; later each level rounds what the finer one wrote.
+  /// \param line_vertices  of a leaf tile: the last vertices.
+  void fix_rim(TerrainMesh& mesh, std::span<const hierarchy::LineVertex> line_vertices = {}) const {
+    std::vector<TerrainVertex*> rim, between;
     std::vector<SampleId> samples;
-    std::vector<GridPosition> positions;
-    for (TerrainVertex& vertex : mesh.vertices) {
-      if (vertex.kind == VertexKind::kInterior) continue;
-      rim.push_back(&vertex);
-      samples.push_back(vertex.sample);
-      positions.push_back(
-          {static_cast<double>(vertex.sample.column), static_cast<double>(vertex.sample.row)});
+    std::vector<GridPosition> positions, positions_between;
+    std::vector<double> heights_between_m;
+    const std::size_t first_of_lines = mesh.vertices.size() - line_vertices.size();
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      TerrainVertex& vertex = mesh.vertices[v];
+      if (vertex.border.is_sample()) {
+        rim.push_back(&vertex);
+        samples.push_back(vertex.border.sample());
+        positions.push_back(vertex.border.position());
+      } else if (!vertex.border.is_none() && v >= first_of_lines) {
+        between.push_back(&vertex);
+        positions_between.push_back(vertex.border.position());
+        heights_between_m.push_back(line_vertices[v - first_of_lines].height_m);
+      }
     }
-    const std::vector<Plumb> plumbs = source_.world.plumbs(positions);
-    const std::vector<double> heights_m = samples_.heights_m(samples);
-    for (std::size_t i = 0; i < rim.size(); ++i) {
-      rim[i]->place = frame_.place_of(
-          source_.lattice.of_sample(positions[i], plumbs[i], heights_m[i], tile_.level));
-    }
+    put(rim, positions, samples_.heights_m(samples));
+    put(between, positions_between, heights_between_m);
   }
 
   /// Collapses and measures; again with a smaller tolerance while the world says it is too much.
@@ -105,6 +115,7 @@ class TileBuild {
       const std::vector<LatticePoint>& finer_points, double tolerance_m) {
     // the grid frame's straight lines are not quite the world's: 0.1 % saves most second tries
     StrictOptions options{.tolerance_m = 0.999 * tolerance_m, .effort = source_.effort};
+    if (source_.features != nullptr) options.lines = source_.features->tolerance(tile_.level);
     options.smallest_altitude_cells =
         source_.lattice.smallest_altitude_steps() * step_m() / frame_.spacing_m();
 
@@ -126,12 +137,22 @@ class TileBuild {
  private:
   double step_m() const { return source_.lattice.step_m(tile_.level).x(); }
 
+  void put(const std::vector<TerrainVertex*>& vertices, const std::vector<GridPosition>& positions,
+           const std::vector<double>& heights_m) const {
+    const std::vector<Plumb> plumbs = source_.world.plumbs(positions);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      vertices[i]->place = frame_.place_of(
+          source_.lattice.of_sample(positions[i], plumbs[i], heights_m[i], tile_.level));
+    }
+  }
+
   TileMesh written_mesh(const TerrainMesh& terrain, const MeasuredError& error) const {
-    TileMesh mesh{.triangles = terrain.triangles, .error = error};
+    TileMesh mesh{.triangles = terrain.triangles, .lines = terrain.lines, .error = error};
     std::vector<Place> places;
     for (const TerrainVertex& vertex : terrain.vertices) {
       mesh.points.push_back(vertex.place.lattice);
-      mesh.samples.push_back(vertex.sample);
+      mesh.borders.push_back(vertex.border);
+      mesh.water_m.push_back(vertex.water_m);
       places.push_back(vertex.place);
     }
     mesh.normals = terrain_normals(places, frame_, source_.pyramid.octave(tile_.level), samples_);
@@ -213,30 +234,40 @@ std::vector<bool> find_boundary(std::size_t vertex_count, const std::vector<Corn
 }
 
 /// Inside, a vertex is free; on the rim it keeps its sample, and on a seam its place as well.
-void set_kind(TerrainVertex& vertex, bool is_boundary, const SampleId& sample,
+void set_kind(TerrainVertex& vertex, bool is_boundary, const BorderPlace& border,
               const Pyramid& pyramid, const TileId& tile) {
   if (!is_boundary) return;
-  vertex.sample = sample;
-  vertex.kind = pyramid.is_on_seam(tile, sample.column, sample.row) ? VertexKind::kLocked
-                                                                    : VertexKind::kOutline;
+  vertex.border = border;
+  const bool may_slide = border.is_sample() && !pyramid.is_on_seam(tile, border.column, border.row);
+  vertex.kind = may_slide ? VertexKind::kOutline : VertexKind::kLocked;
+}
+
+/// A vertex on a line stays on it; where the line comes to the rim, it stays altogether.
+void set_line_kinds(TerrainMesh& mesh) {
+  for (const hierarchy::LineEdge& edge : mesh.lines) {
+    for (const std::uint32_t v : edge) {
+      VertexKind& kind = mesh.vertices[v].kind;
+      kind = mesh.vertices[v].border.is_none() ? VertexKind::kFeature : VertexKind::kLocked;
+    }
+  }
 }
 
 /// Takes the vertices out of a tile that its seams leave out: as their triangles' corners become
 /// others, those that lose one vanish.
-FinerLevel leave_out(const std::vector<SampleId>& samples, const std::vector<SeamChain>& seams,
+FinerLevel leave_out(const std::vector<BorderPlace>& borders, const std::vector<SeamChain>& seams,
                      std::vector<Corners>& triangles) {
-  std::map<std::pair<std::int32_t, std::int32_t>, std::uint32_t> by_sample;
-  for (std::uint32_t v = 0; v < samples.size(); ++v) {
-    if (samples[v].column >= 0) by_sample.emplace(std::pair{samples[v].row, samples[v].column}, v);
+  std::map<std::pair<double, double>, std::uint32_t> by_place;
+  for (std::uint32_t v = 0; v < borders.size(); ++v) {
+    if (!borders[v].is_none()) by_place.emplace(std::pair{borders[v].row, borders[v].column}, v);
   }
   FinerLevel finer{.places = {}, .triangles = triangles, .target = {}};
-  for (std::uint32_t v = 0; v < samples.size(); ++v) finer.target.push_back(v);
+  for (std::uint32_t v = 0; v < borders.size(); ++v) finer.target.push_back(v);
   for (const SeamChain& seam : seams) {
     for (const auto& [gone, onto] : seam) {
-      const auto from = by_sample.find({gone.row, gone.column});
-      const auto to = by_sample.find({onto.row, onto.column});
+      const auto from = by_place.find({gone.row, gone.column});
+      const auto to = by_place.find({onto.row, onto.column});
       // where only the neighbour has triangles, there is nothing to take out
-      if (from != by_sample.end() && to != by_sample.end()) finer.target[from->second] = to->second;
+      if (from != by_place.end() && to != by_place.end()) finer.target[from->second] = to->second;
     }
   }
   for (Corners& corners : triangles) {
@@ -247,23 +278,55 @@ FinerLevel leave_out(const std::vector<SampleId>& samples, const std::vector<Sea
   return finer;
 }
 
+/// Lines were laid so that rounding turns none of their triangles over: see ingest/features.h.
+void check_upright(const TerrainMesh& mesh, const TileId& tile) {
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Place* corners[] = {&mesh.vertices[a].place, &mesh.vertices[b].place,
+                              &mesh.vertices[c].place};
+    if (hierarchy::orient2d(corners[0]->plan, corners[1]->plan, corners[2]->plan) > 0) continue;
+    throw TopologyError(
+        fmt::format("tile {}: lines are so near to each other at column {:.2f}, row {:.2f} of it "
+                    "that rounding folds the terrain. Simplify them there, or use a larger "
+                    "--tolerance",
+                    path_of(tile), hierarchy::column_of(corners[0]->plan),
+                    hierarchy::row_of(corners[0]->plan)));
+  }
+}
+
 }  // namespace
+
+std::span<const FeatureLine> lines_of(const TileSource& source, const TileId& leaf) {
+  if (source.features == nullptr) return {};
+  return source.features->lines_of(leaf);
+}
 
 BuiltTile build_leaf(const TileSource& source, const TileId& tile,
                      const std::vector<SeamChain>& seams, double tolerance_m) {
   TileBuild build(source, tile, 0);
   const TileSamples& samples = build.samples();
-  hierarchy::GridTriangles full = hierarchy::triangulate(samples.whole(), samples.window());
+  hierarchy::LinedTriangles full =
+      hierarchy::triangulate_with_lines(samples.whole(), samples.window(), lines_of(source, tile));
   if (full.triangles.empty()) return {};
 
-  const std::vector<bool> boundary = find_boundary(full.vertices.size(), full.triangles);
-  const FinerLevel finer = leave_out(full.vertices, seams, full.triangles);
-  TerrainMesh mesh{{}, std::move(full.triangles)};
-  for (std::size_t v = 0; v < full.vertices.size(); ++v) {
-    mesh.vertices.push_back({.place = build.place_inner_sample(full.vertices[v])});
-    set_kind(mesh.vertices.back(), boundary[v], full.vertices[v], source.pyramid, tile);
+  const std::vector<BorderPlace> places = places_of(full, samples.window());
+  const std::vector<bool> boundary = find_boundary(places.size(), full.triangles);
+  const FinerLevel finer = leave_out(places, seams, full.triangles);
+  TerrainMesh mesh{{}, std::move(full.triangles), std::move(full.edges)};
+  for (const SampleId& sample : full.samples) {
+    mesh.vertices.push_back({.place = build.place_inner_sample(sample)});
+    if (source.features != nullptr) {
+      mesh.vertices.back().water_m = source.features->water_m(sample);
+    }
   }
-  build.fix_rim(mesh);
+  for (const hierarchy::LineVertex& vertex : full.line_vertices) {
+    mesh.vertices.push_back({.place = build.place_line_vertex(vertex)});
+  }
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    set_kind(mesh.vertices[v], boundary[v], places[v], source.pyramid, tile);
+  }
+  set_line_kinds(mesh);
+  build.fix_rim(mesh, full.line_vertices);
+  if (!full.line_vertices.empty()) check_upright(mesh, tile);
   return {build.finish(mesh, finer, {}, tolerance_m).first, {}};
 }
 
@@ -277,13 +340,15 @@ BuiltTile build_parent(const TileSource& source, const TileId& tile,
 
   TileBuild build(source, tile, joined.triangles.size());
   const std::vector<bool> boundary = find_boundary(joined.points.size(), joined.triangles);
-  FinerLevel finer = leave_out(joined.samples, seams, joined.triangles);
-  TerrainMesh mesh{{}, std::move(joined.triangles)};
+  FinerLevel finer = leave_out(joined.borders, seams, joined.triangles);
+  TerrainMesh mesh{{}, std::move(joined.triangles), std::move(joined.lines)};
   for (std::uint32_t v = 0; v < joined.points.size(); ++v) {
     finer.places.push_back(build.frame().place_of_finer(joined.points[v]));
     mesh.vertices.push_back({.place = build.frame().place_of(finer.places.back().lattice)});
-    set_kind(mesh.vertices.back(), boundary[v], joined.samples[v], source.pyramid, tile);
+    mesh.vertices.back().water_m = joined.water_m[v];
+    set_kind(mesh.vertices.back(), boundary[v], joined.borders[v], source.pyramid, tile);
   }
+  set_line_kinds(mesh);
   build.fix_rim(mesh);
 
   auto [own, targets] = build.finish(mesh, finer, joined.points, tolerance_m);

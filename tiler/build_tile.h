@@ -7,6 +7,7 @@
 #include "tiler/pyramid.h"
 #include "tiler/seams/seam.h"
 #include "tiler/tile/lattice.h"
+#include "tiler/tile/tile_features.h"
 #include "tiler/tile/tile_mesh.h"
 #include "tiler/tile/world_frame.h"
 
@@ -20,7 +21,12 @@ struct TileSource {
   const Lattice& lattice;
   /// Of level 0 alone; see hierarchy::StrictOptions::effort.
   int effort = hierarchy::kDefaultEffort;
+  /// Lines and water that tiles keep, if any.
+  const TileFeatures* features = nullptr;
 };
+
+/// What lines do in a leaf tile and on its border.
+std::span<const FeatureLine> lines_of(const TileSource& source, const TileId& leaf);
 
 /// A tile and where the vertices of its children end in it.
 struct BuiltTile {
@@ -36,7 +42,7 @@ BuiltTile build_leaf(const TileSource& source, const TileId& tile,
                      const std::vector<SeamChain>& seams, double tolerance_m);
 
 /// Builds a tile from the meshes of its children (in the order of Pyramid::children): joins them
-/// along their seams and collapses what the wider tolerance allows.
+/// along their borders and collapses what the wider tolerance allows.
 ///
 /// The result is within the tolerance of every sample as measured in the world; its seams are the
 /// children's outer ones, less what \p seams leave out.

@@ -62,12 +62,16 @@ Window Pyramid::window(const TileId& tile, std::int64_t margin) const {
   return {left, top, right - left + 1, bottom - top + 1};
 }
 
-bool Pyramid::is_on_seam(const TileId& tile, std::int64_t column, std::int64_t row) const {
+bool Pyramid::is_on_seam(const TileId& tile, double column, double row) const {
   const Window own = window(tile);
-  const std::int64_t right = own.column + own.columns - 1, bottom = own.row + own.rows - 1;
-  if (goes_round_ && (column == 0 || column == shape_.columns - 1)) return true;
-  return (column == own.column && column > 0) || (column == right && right < shape_.columns - 1) ||
-         (row == own.row && row > 0) || (row == bottom && bottom < shape_.rows - 1);
+  const auto left = static_cast<double>(own.column), top = static_cast<double>(own.row);
+  const auto right = static_cast<double>(own.column + own.columns - 1);
+  const auto bottom = static_cast<double>(own.row + own.rows - 1);
+  const auto last_column = static_cast<double>(shape_.columns - 1);
+  const auto last_row = static_cast<double>(shape_.rows - 1);
+  if (goes_round_ && (column == 0 || column == last_column)) return true;
+  return (column == left && column > 0) || (column == right && right < last_column) ||
+         (row == top && row > 0) || (row == bottom && bottom < last_row);
 }
 
 }  // namespace terrane::tiler

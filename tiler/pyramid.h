@@ -27,6 +27,7 @@ class Pyramid {
 
   int level_count() const { return level_count_; }
   int root_level() const { return level_count_ - 1; }
+  std::int64_t leaf_cells() const { return tile_cells_; }
   /// How often tiles have doubled in size at a level.
   int octave(int level) const { return level / levels_per_octave_; }
 
@@ -45,9 +46,9 @@ class Pyramid {
   /// The samples of a tile and up to \p margin more on each side, as far as the DEM goes.
   Window window(const TileId& tile, std::int64_t margin) const;
 
-  /// Does a sample lie on a border that the tile shares with a neighbour's place? Round the Earth,
-  /// too.
-  bool is_on_seam(const TileId& tile, std::int64_t column, std::int64_t row) const;
+  /// Does a place, in cells, lie on a border that the tile shares with a neighbour's place? Round
+  /// the Earth, too.
+  bool is_on_seam(const TileId& tile, double column, double row) const;
 
  private:
   std::int64_t cells_per_side(int level) const { return tile_cells_ << octave(level); }

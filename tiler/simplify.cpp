@@ -83,7 +83,7 @@ TerrainMesh full_terrain(const HeightGrid& grid, const std::vector<FeatureLine>&
     if (vertex.kind != VertexKind::kLocked) {
       vertex.kind = is_on_line ? VertexKind::kLocked : VertexKind::kOutline;
     }
-    if (number < full.samples.size()) vertex.sample = full.samples[number];
+    if (number < full.samples.size()) vertex.border = full.samples[number];
   }
   return terrain;
 }

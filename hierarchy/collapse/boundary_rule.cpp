@@ -6,9 +6,9 @@ namespace terrane::hierarchy {
 namespace {
 
 /// Does m lie on the straight line between a and b, and strictly between them?
-bool is_between(SampleId m, SampleId a, SampleId b) {
-  const std::int64_t ax = a.column - m.column, ay = a.row - m.row;
-  const std::int64_t bx = b.column - m.column, by = b.row - m.row;
+bool is_between(const BorderPlace& m, const BorderPlace& a, const BorderPlace& b) {
+  const double ax = a.column - m.column, ay = a.row - m.row;
+  const double bx = b.column - m.column, by = b.row - m.row;
   return ax * by - ay * bx == 0 && ax * bx + ay * by < 0;
 }
 
@@ -44,8 +44,8 @@ bool may_give_way(VertexId v, VertexId onto, const OutlineNeighbours& neighbours
   for (const VertexId other : {neighbours.before, neighbours.after}) {
     const TerrainVertex& far_end = vertices[index(other)];
     // where a line ends on the outline between two samples, the outline stays as it is
-    if (target.sample.column < 0 || far_end.sample.column < 0) continue;
-    if (is_between(moving.sample, target.sample, far_end.sample)) {
+    if (!target.border.is_sample() || !far_end.border.is_sample()) continue;
+    if (is_between(moving.border, target.border, far_end.border)) {
       return placer.is_straight(target.place, far_end.place);
     }
   }

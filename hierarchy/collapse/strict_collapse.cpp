@@ -142,6 +142,7 @@ class StrictCollapse {
     walker_.around_vertex(v, stencil_);
     star_.gather(stencil_, mesh_, vertices_, samples_);
     const Place here = vertices_[index(v)].place;
+    water_m_ = vertices_[index(v)].water_m;
     candidates_.clear();
     candidates_.push_back({here.plan, here.height_m});
     for (const VertexId to : stencil_.polygon) {
@@ -231,12 +232,24 @@ class StrictCollapse {
     if (complete != Collapsibility::kYes) return complete;
     const BoundaryVerdict boundary =
         classify(stencil_, mesh_, vertices_, placer_, lines_ ? &*lines_ : nullptr);
-    if (boundary.type == BoundaryType::kFixed) return Collapsibility::kBoundary;
+    if (boundary.type == BoundaryType::kFixed || is_water_meeting_land(boundary)) {
+      return Collapsibility::kBoundary;
+    }
     const auto best = best_place(boundary);
     if (!best) return refusal_;
     if (guard_ && !guard_->allows(stencil_.core_span(), *best)) return Collapsibility::kMorph;
     commit(*best, boundary.onto.value_or(stencil_.core[0]));
     return Collapsibility::kYes;
+  }
+
+  /// Where the shore is lost, at the edge of the data, water must not be drawn up.
+  bool is_water_meeting_land(const BoundaryVerdict& boundary) const {
+    if (boundary.type != BoundaryType::kInterior) return false;
+    const float water_m = vertices_[index(stencil_.core[0])].water_m;
+    return std::ranges::any_of(stencil_.core_span(), [&](VertexId v) {
+      const float other_m = vertices_[index(v)].water_m;
+      return other_m != water_m && !(std::isnan(other_m) && std::isnan(water_m));
+    });
   }
 
   void list_candidates() {
@@ -276,6 +289,7 @@ class StrictCollapse {
     refusal_ = Collapsibility::kNotStarShaped;
     if (boundary.onto) return onto_line(vertices_[index(*boundary.onto)].place);
 
+    water_m_ = vertices_[index(stencil_.core[0])].water_m;
     list_candidates();
     return best_candidate();
   }
@@ -320,7 +334,9 @@ class StrictCollapse {
 
   /// The place that will be written for a candidate, if it holds what the wished place promised.
   std::optional<Place> written(const Candidate& candidate) {
-    const Place place = placer_.place(candidate.plan, wished_height_m(candidate));
+    const double height_m = std::isnan(water_m_) ? wished_height_m(candidate)
+                                                 : placer_.over_datum_m(candidate.plan, water_m_);
+    const Place place = placer_.place(candidate.plan, height_m);
     if (!is_star_shaped(place.plan)) return std::nullopt;
     if (!judge_.holds(star_, place, samples_, tolerance_m_)) return std::nullopt;
     return place;
@@ -433,6 +449,7 @@ class StrictCollapse {
   std::vector<std::uint32_t> block_;
   Stencil stencil_;
   std::vector<Candidate> candidates_;
+  float water_m_ = 0;  // of what is being moved; NaN on land
   EdgeFlip flip_;
   Star star_;
   StarJudge judge_;

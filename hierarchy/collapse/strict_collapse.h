@@ -48,7 +48,8 @@ struct StrictResult {
 /// Sweeps run in memory order over stencils that do not meet. A collapse is accepted when the star
 /// that replaces the stencil, at its written (rounded) places, is within the tolerance of every
 /// sample that it covers, is nowhere folded in plan, keeps lines in place (boundary_rule.h) and, if
-/// there is a finer level, lets it blend soundly (morph_guard.h).
+/// there is a finer level, lets it blend soundly (morph_guard.h). A vertex in water stays at the
+/// water's height.
 ///
 /// Guarantees: samples that \p input covers within the tolerance stay so; outline and locked
 /// vertices that remain have not moved; the result depends on nothing but the arguments.

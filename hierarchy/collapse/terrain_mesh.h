@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/lattice_point.h"
+#include "hierarchy/mesh/border_place.h"
 #include "hierarchy/mesh/grid_point.h"
 #include "hierarchy/mesh/grid_triangles.h"
 #include "hierarchy/mesh/halfedge_mesh.h"
@@ -28,7 +30,9 @@ enum class VertexKind : std::uint8_t {
 struct TerrainVertex {
   Place place;
   VertexKind kind = VertexKind::kInterior;
-  SampleId sample;  ///< the sample that an outline or locked vertex is; {-1, -1} inside
+  BorderPlace border = {};  ///< of an outline or locked vertex
+  /// Height over the ellipsoid of the water that an interior vertex lies in; NaN on land.
+  float water_m = std::numeric_limits<float>::quiet_NaN();
 };
 
 struct TerrainMesh {
@@ -44,6 +48,9 @@ class Placer {
 
   /// The written place nearest to a wished one.
   virtual Place place(GridPoint plan, double height_m) const = 0;
+
+  /// What a height over the ellipsoid is over the datum that place() counts from.
+  virtual double over_datum_m(GridPoint /*plan*/, double height_m) const { return height_m; }
 
   /// How far in plan the straight edge between two written places lies beside the straight line
   /// between them on the grid, in metres.

@@ -34,6 +34,22 @@ std::optional<std::uint32_t> apex(const Corners& t, std::uint32_t from, std::uin
   return std::nullopt;
 }
 
+/// Does d lie inside the circle through a, b, c? Exact: 14 bits along a cell's side make 60 of the
+/// determinant.
+bool is_in_circle(GridPoint a, GridPoint b, GridPoint c, GridPoint d) {
+  struct Lifted {
+    std::int64_t x, y, square;
+  };
+  const auto lift = [d](GridPoint p) {
+    const std::int64_t x = std::int64_t{p.x} - d.x, y = std::int64_t{p.y} - d.y;
+    return Lifted{x, y, x * x + y * y};
+  };
+  const Lifted p = lift(a), q = lift(b), r = lift(c);
+  return p.square * (q.x * r.y - q.y * r.x) - q.square * (p.x * r.y - p.y * r.x) +
+             r.square * (p.x * q.y - p.y * q.x) >
+         0;
+}
+
 int sign(std::int64_t value) { return (value > 0) - (value < 0); }
 
 /// A whole number of cells is a side of the cell, which belongs to its neighbour, too: one step
@@ -181,6 +197,35 @@ void CellTriangulation::flip_to(std::uint32_t a, std::uint32_t b, std::vector<Ed
     *other = {s, q, r};
     if (crosses(sorted(r, s), a, b)) left.push_back(sorted(r, s));
   }
+}
+
+void CellTriangulation::make_delaunay() {
+  // each flip lowers the surface over a paraboloid, so this ends
+  for (bool is_done = false; !is_done;) {
+    is_done = true;
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      for (std::uint32_t k = 0; k < kSides; ++k) {
+        if (flip_if_better(i, k)) is_done = false;
+      }
+    }
+  }
+}
+
+/// \return whether the side k of triangle i was flipped.
+bool CellTriangulation::flip_if_better(std::size_t i, std::uint32_t k) {
+  const Corners t = triangles_[i];
+  const std::uint32_t p = t[k], q = t[(k + 1) % kSides], r = t[(k + 2) % kSides];
+  if (is_joined(p, q)) return false;
+  for (Corners& other : triangles_) {
+    const auto s = apex(other, q, p);
+    if (!s) continue;
+    if (!is_in_circle(points_[p], points_[q], points_[r], points_[*s])) return false;
+    if (!crosses({p, q}, r, *s)) return false;
+    triangles_[i] = {r, p, *s};
+    other = {*s, q, r};
+    return true;
+  }
+  return false;
 }
 
 void CellTriangulation::meet(Edge earlier, std::uint32_t a, std::uint32_t b) {

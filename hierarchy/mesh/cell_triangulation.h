@@ -35,6 +35,10 @@ class CellTriangulation {
   /// common at the crossing, rounded to the grid point.
   void join(std::uint32_t a, std::uint32_t b);
 
+  /// Flips edges that are not joined until no triangle's circle holds the corner across, so that
+  /// triangles are as fat as the points allow.
+  void make_delaunay();
+
   std::span<const GridPoint> points() const { return points_; }
   std::span<const Corners> triangles() const { return triangles_; }
   /// The edges that join() made, smaller number first.
@@ -46,6 +50,7 @@ class CellTriangulation {
   void split_edge(std::uint32_t from, std::uint32_t to, std::uint32_t at);
   bool crosses(Edge edge, std::uint32_t a, std::uint32_t b) const;
   std::vector<Edge> edges_across(std::uint32_t a, std::uint32_t b) const;
+  bool flip_if_better(std::size_t i, std::uint32_t k);
   void flip_to(std::uint32_t a, std::uint32_t b, std::vector<Edge> crossing);
   void meet(Edge earlier, std::uint32_t a, std::uint32_t b);
 

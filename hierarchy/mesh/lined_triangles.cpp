@@ -58,9 +58,13 @@ class LinedMesh {
       for (const CellId& cell : cells_of(piece)) {
         const std::optional<Piece> part = clipped(piece, cell);
         if (!part) continue;
-        for (const GridPoint p : {part->from, part->to}) touch(p);
+        for (const GridPoint p : {part->from, part->to}) touch(p, line.height_m);
         cells_[cell].pieces.push_back(*part);
         break;
+      }
+      // what a line beside the window does on its border is done on both sides of that
+      for (const GridPoint p : {piece.from, piece.to}) {
+        if (is_on_border(p)) touch(p, line.height_m);
       }
     }
   }
@@ -70,8 +74,6 @@ class LinedMesh {
       const auto at = cells_.find(cell_of(t));
       (at == cells_.end() ? result_.triangles : at->second.triangles).push_back(t);
     }
-    // shores first: where another line meets one, the water's height stands
-    for (auto& [id, cell] : cells_) set_shore_heights(cell);
     for (auto& [id, cell] : cells_) triangulate_cell(cell);
     result_.edges.assign(edges_.begin(), edges_.end());
     return std::move(result_);
@@ -89,6 +91,14 @@ class LinedMesh {
                 std::lround((p.column - static_cast<double>(window_.column)) * kUnitsPerCell)),
             static_cast<std::int32_t>(
                 -std::lround((p.row - static_cast<double>(window_.row)) * kUnitsPerCell))};
+  }
+
+  bool is_on_border(GridPoint p) const {
+    const std::int64_t last_x = (window_.columns - 1) * kUnitsPerCell;
+    const std::int64_t last_y = (window_.rows - 1) * kUnitsPerCell;
+    const std::int64_t x = p.x, y = -std::int64_t{p.y};
+    return x >= 0 && y >= 0 && x <= last_x && y <= last_y &&
+           (x == 0 || y == 0 || x == last_x || y == last_y);
   }
 
   GridPoint plan_of(std::uint32_t vertex) const {
@@ -166,8 +176,10 @@ class LinedMesh {
     return a / b - (a % b != 0 && a < 0 ? 1 : 0);
   }
 
-  /// Tells every cell that a point lies in or on.
-  void touch(GridPoint p) {
+  /// Tells every cell that a point lies in or on. Where another line meets a shore, the water's
+  /// height stands; where two shores do, that of the later.
+  void touch(GridPoint p, const std::optional<double>& shore_m) {
+    if (shore_m) shore_[p] = *shore_m;
     const std::int64_t x = p.x, y = -std::int64_t{p.y};
     const std::int64_t column = floor_div(x, kUnitsPerCell), row = floor_div(y, kUnitsPerCell);
     for (std::int64_t r = y % kUnitsPerCell == 0 ? row - 1 : row; r <= row; ++r) {
@@ -184,14 +196,6 @@ class LinedMesh {
       cell.column = std::min<std::int64_t>(cell.column, result_.samples[v].column - window_.column);
     }
     return cell;
-  }
-
-  void set_shore_heights(const CellLines& cell) {
-    for (const Piece& piece : cell.pieces) {
-      if (!piece.height_m) continue;
-      shore_[piece.from] = *piece.height_m;
-      shore_[piece.to] = *piece.height_m;
-    }
   }
 
   void triangulate_cell(CellLines& cell) {
@@ -217,6 +221,7 @@ class LinedMesh {
     }
     for (const Piece& piece : cell.pieces)
       work.join(work.insert(piece.from), work.insert(piece.to));
+    work.make_delaunay();
     for (std::size_t i = vertices.size(); i < work.points().size(); ++i) {
       vertices.push_back(vertex_at(work.points()[i], cell));
     }
@@ -284,9 +289,22 @@ class LinedMesh {
 
 LinedTriangles triangulate_with_lines(const HeightGrid& grid, const Window& window,
                                       std::span<const FeatureLine> lines) {
+  if (lines.empty()) {
+    GridTriangles full = triangulate(grid, window);
+    return {std::move(full.vertices), {}, std::move(full.triangles), {}};
+  }
   LinedMesh mesh(grid, window);
   for (const FeatureLine& line : lines) mesh.add(line);
   return mesh.finish();
+}
+
+std::vector<BorderPlace> places_of(const LinedTriangles& full, const Window& window) {
+  std::vector<BorderPlace> places(full.samples.begin(), full.samples.end());
+  for (const LineVertex& vertex : full.line_vertices) {
+    places.emplace_back(static_cast<double>(window.column) + column_of(vertex.plan),
+                        static_cast<double>(window.row) + row_of(vertex.plan));
+  }
+  return places;
 }
 
 }  // namespace terrane::hierarchy

@@ -6,6 +6,7 @@
 
 #include "core/grid_features.h"
 #include "core/height_grid.h"
+#include "hierarchy/mesh/border_place.h"
 #include "hierarchy/mesh/grid_point.h"
 #include "hierarchy/mesh/grid_triangles.h"
 
@@ -31,13 +32,21 @@ struct LinedTriangles {
 /// Joins the samples of a window to triangles, as triangulate() does, and splits the cells that
 /// lines pass through so that the lines are edges.
 ///
+/// The triangles of a cell depend on what lines do in and on it alone; on the border of the window
+/// also lines beside it count, so that two windows that share a border have the same vertices
+/// there.
+///
 /// Every sample stays a vertex, so the mesh is as near to the samples as the one without lines is.
 /// Where a line crosses a side of a cell, its vertex is as high as that side; where it bends
 /// inside, as high as the triangle there; on a shore, as high as the water. Lines end where there
 /// is no triangle: with a vertex on the edge of the data that is no sample.
 ///
+/// \param lines  pieces beside the window do no harm.
 /// \pre the window lies in grid.window; lines are laid on the grid (core/grid_features.h).
 LinedTriangles triangulate_with_lines(const HeightGrid& grid, const Window& window,
                                       std::span<const FeatureLine> lines);
+
+/// Where the vertices stand on the grid of the DEM.
+std::vector<BorderPlace> places_of(const LinedTriangles& full, const Window& window);
 
 }  // namespace terrane::hierarchy

@@ -52,7 +52,7 @@ inline TerrainMesh terrain_of(const HeightGrid& grid) {
                                              grid.at(s.column, s.row))};
     if (mesh.is_boundary(VertexId{v})) {
       vertex.kind = VertexKind::kOutline;
-      vertex.sample = s;
+      vertex.border = s;
     }
     terrain.vertices.push_back(vertex);
   }

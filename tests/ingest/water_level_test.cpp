@@ -27,7 +27,7 @@ class Slope final : public HeightSource {
 
 std::vector<GridPosition> ring(std::vector<GridPosition> corners) {
   corners.push_back(corners.front());
-  return lay_on_grid(corners, 1.0 / 256);
+  return lay_on_grid(corners, {.snap_cells = 1.0 / 256});
 }
 
 /// From (1.5, 1.5) to (8.5, 7), with an island from (4.5, 2.5) to (6.5, 4.5).
@@ -98,7 +98,7 @@ TEST(ShoreHeight, OfAPondBetweenSamplesIsThatOfThoseAround) {
 TEST(LevelWater, PutsSamplesInsideAndVoidsAtOneHeightAndLeavesTheRest) {
   WaterBody body = lake(7.5);
   body.shores.resize(1);  // without the island, so that the void is in the water
-  const auto levelled = level_water(std::make_unique<Slope>(), {body});
+  const auto levelled = level_water(std::make_unique<Slope>(), water_rows({body}, {12, 10}));
   const HeightGrid whole = levelled->read({0, 0, 12, 10}), part = levelled->read({4, 3, 3, 2});
   for (std::int64_t row = 0; row < 10; ++row) {
     for (std::int64_t column = 0; column < 12; ++column) {

@@ -201,7 +201,7 @@ class GeodeticBuild {
 std::string geodetic_key(const HeightStatistics& statistics, const GeodeticOptions& options) {
   return hash_hex(fmt::format("geodetic {} {} {} {} {} {}", TERRANE_GENERATOR, options.tolerance_m,
                               statistics.fingerprint, options.source, options.attribution,
-                              options.water ? "water" : ""));
+                              options.water_fingerprint));
 }
 
 bool is_finished(const fs::path& out, const std::string& key) {

@@ -26,6 +26,7 @@ struct GeodeticOptions {
   /// The water mask of a tile, as TerrainTile has it; none without water.
   std::function<std::string(double west_deg, double south_deg, double east_deg, double north_deg)>
       water;
+  std::string water_fingerprint;  ///< changes whenever the mask does
 };
 
 /// The key that a finished data set of these options has.

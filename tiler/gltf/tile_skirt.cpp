@@ -9,7 +9,7 @@
 namespace terrane::tiler {
 namespace {
 
-using hierarchy::SampleId;
+using hierarchy::BorderPlace;
 using Edge = std::array<std::uint32_t, 2>;
 
 /// Edges with a triangle on one side only, that one to their left, in order.
@@ -24,10 +24,10 @@ std::set<Edge> open_edges(const TileMesh& mesh) {
   return open;
 }
 
-/// Do two border samples lie on one line that the tile shares with a neighbour?
-bool is_along_seam(const Pyramid& pyramid, const TileId& tile, const SampleId& a,
-                   const SampleId& b) {
-  if (a.column < 0 || b.column < 0 || (a.column != b.column && a.row != b.row)) return false;
+/// Do two places on the border lie on one line that the tile shares with a neighbour?
+bool is_along_seam(const Pyramid& pyramid, const TileId& tile, const BorderPlace& a,
+                   const BorderPlace& b) {
+  if (a.is_none() || b.is_none() || (a.column != b.column && a.row != b.row)) return false;
   return pyramid.is_on_seam(tile, a.column, a.row) && pyramid.is_on_seam(tile, b.column, b.row);
 }
 
@@ -53,7 +53,7 @@ TileSkirt hang_skirt(const Pyramid& pyramid, const TileId& tile, const TileMesh&
     return at->second;
   };
   for (const auto& [from, to] : open_edges(mesh)) {
-    if (!is_along_seam(pyramid, tile, mesh.samples[from], mesh.samples[to])) continue;
+    if (!is_along_seam(pyramid, tile, mesh.borders[from], mesh.borders[to])) continue;
     const std::uint32_t a = number(from), b = number(to);
     skirt.triangles.push_back({a, a + 1, b + 1});
     skirt.triangles.push_back({a, b + 1, b});

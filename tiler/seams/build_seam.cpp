@@ -13,6 +13,7 @@
 namespace terrane::tiler {
 namespace {
 
+using hierarchy::BorderPlace;
 using hierarchy::ChainOptions;
 using hierarchy::ChainResult;
 using hierarchy::Corners;
@@ -25,30 +26,37 @@ using hierarchy::VertexKind;
 
 /// The triangles that touch a seam, of both its tiles.
 struct Strip {
-  std::vector<SampleId> samples;     ///< of each vertex; {-1, -1} inside the tiles
-  std::vector<LatticePoint> points;  ///< on the finer level's lattice; empty at level 0
+  std::vector<BorderPlace> borders;    ///< of each vertex; none inside the tiles, but at level 0
+  std::vector<double> line_heights_m;  ///< at level 0: of each vertex between samples; else NaN
+  std::vector<LatticePoint> points;    ///< on the finer level's lattice; empty at level 0
   std::vector<Corners> triangles;
+  std::vector<std::uint8_t> is_on_line;  ///< of each vertex
 };
 
-bool contains(const Window& window, const SampleId& sample) {
-  return sample.column >= window.column && sample.column < window.column + window.columns &&
-         sample.row >= window.row && sample.row < window.row + window.rows;
+bool contains(const Window& window, const BorderPlace& place) {
+  const auto left = static_cast<double>(window.column), top = static_cast<double>(window.row);
+  return place.column >= left && place.column <= left + static_cast<double>(window.columns - 1) &&
+         place.row >= top && place.row <= top + static_cast<double>(window.rows - 1);
 }
 
 /// Keeps the triangles that touch the line, and their vertices.
 Strip cut_strip(const Strip& all, const Window& line) {
   constexpr std::uint32_t kUnused = ~std::uint32_t{0};
-  std::vector<std::uint32_t> number(all.samples.size(), kUnused);
+  std::vector<std::uint32_t> number(all.borders.size(), kUnused);
   Strip strip;
   for (const Corners& corners : all.triangles) {
-    const auto touches = [&](std::uint32_t v) { return contains(line, all.samples[v]); };
+    const auto touches = [&](std::uint32_t v) { return contains(line, all.borders[v]); };
     if (std::ranges::none_of(corners, touches)) continue;
     Corners& kept = strip.triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
       std::uint32_t& v = number[corners[k]];
       if (v == kUnused) {
-        v = static_cast<std::uint32_t>(strip.samples.size());
-        strip.samples.push_back(all.samples[corners[k]]);
+        v = static_cast<std::uint32_t>(strip.borders.size());
+        strip.borders.push_back(all.borders[corners[k]]);
+        strip.is_on_line.push_back(all.is_on_line[corners[k]]);
+        if (!all.line_heights_m.empty()) {
+          strip.line_heights_m.push_back(all.line_heights_m[corners[k]]);
+        }
         if (!all.points.empty()) strip.points.push_back(all.points[corners[k]]);
       }
       kept[k] = v;
@@ -128,12 +136,16 @@ class SeamBuild {
   void place_vertices() {
     mesh_.triangles = finer_.triangles = strip_.triangles;
     const std::vector<LatticePoint> at_samples = written_samples();
-    for (std::size_t v = 0; v < strip_.samples.size(); ++v) {
+    for (std::size_t v = 0; v < strip_.borders.size(); ++v) {
       if (!strip_.points.empty()) finer_.places.push_back(frame_.place_of_finer(strip_.points[v]));
-      const LatticePoint point =
-          strip_.samples[v].column >= 0 ? at_samples[v] : finer_.places[v].lattice;
-      mesh_.vertices.push_back({.place = frame_.place_of(point), .sample = strip_.samples[v]});
+      const LatticePoint point = is_placed_by_sample(v) ? at_samples[v] : finer_.places[v].lattice;
+      mesh_.vertices.push_back({.place = frame_.place_of(point), .border = strip_.borders[v]});
     }
+  }
+
+  /// As in build_tile: by the sample, or at level 0 by the place on a line.
+  bool is_placed_by_sample(std::size_t v) const {
+    return strip_.points.empty() || strip_.borders[v].is_sample();
   }
 
   /// Where the samples of the strip are written at this level.
@@ -141,32 +153,40 @@ class SeamBuild {
     std::vector<std::size_t> numbers;
     std::vector<SampleId> samples;
     std::vector<GridPosition> positions;
-    for (std::size_t v = 0; v < strip_.samples.size(); ++v) {
-      const SampleId& s = strip_.samples[v];
-      if (s.column < 0) continue;
+    for (std::size_t v = 0; v < strip_.borders.size(); ++v) {
+      if (!is_placed_by_sample(v)) continue;
+      const BorderPlace& border = strip_.borders[v];
       numbers.push_back(v);
-      samples.push_back(s);
-      positions.push_back({static_cast<double>(s.column), static_cast<double>(s.row)});
+      samples.push_back(border.is_sample() ? border.sample() : some_sample());
+      positions.push_back(border.position());
     }
     const std::vector<Plumb> plumbs = source_.world.plumbs(positions);
-    const std::vector<double> heights_m = samples_.heights_m(samples);
-    std::vector<LatticePoint> points(strip_.samples.size());
+    std::vector<double> heights_m = samples_.heights_m(samples);
+    std::vector<LatticePoint> points(strip_.borders.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (!strip_.borders[numbers[i]].is_sample()) heights_m[i] = strip_.line_heights_m[numbers[i]];
       points[numbers[i]] =
           source_.lattice.of_sample(positions[i], plumbs[i], heights_m[i], seam_.first.level);
     }
     return points;
   }
 
+  SampleId some_sample() const {
+    return {static_cast<std::int32_t>(samples_.window().column),
+            static_cast<std::int32_t>(samples_.window().row)};
+  }
+
   void list_chain() {
     const Window line = samples_of(source_.pyramid, seam_);
-    for (std::uint32_t v = 0; v < strip_.samples.size(); ++v) {
-      if (!contains(line, strip_.samples[v])) continue;
+    for (std::uint32_t v = 0; v < strip_.borders.size(); ++v) {
+      if (!contains(line, strip_.borders[v])) continue;
       chain_.push_back(v);
-      mesh_.vertices[v].kind = VertexKind::kOutline;
+      // a line's vertex on a border stays until the tiles are merged
+      mesh_.vertices[v].kind =
+          strip_.is_on_line[v] != 0 ? VertexKind::kLocked : VertexKind::kOutline;
     }
     std::ranges::sort(chain_, {}, [&](std::uint32_t v) {
-      return std::pair{strip_.samples[v].row, strip_.samples[v].column};
+      return std::pair{strip_.borders[v].row, strip_.borders[v].column};
     });
     for (const Corners& corners : strip_.triangles) {
       if (std::ranges::none_of(corners, [&](std::uint32_t v) { return is_on_another_seam(v); })) {
@@ -175,30 +195,32 @@ class SeamBuild {
       for (const std::uint32_t v : corners) lock(v);
     }
     for (const std::uint32_t v : chain_) {
-      if (is_corner(strip_.samples[v])) lock(v);
+      if (is_corner(strip_.borders[v])) lock(v);
     }
   }
 
   void lock(std::uint32_t v) { mesh_.vertices[v].kind = VertexKind::kLocked; }
 
   /// Corners of tiles stay at their level.
-  bool is_corner(const SampleId& sample) const {
+  bool is_corner(const BorderPlace& place) const {
     const Window line = samples_of(source_.pyramid, seam_);
-    const SampleId last{static_cast<std::int32_t>(line.column + line.columns - 1),
-                        static_cast<std::int32_t>(line.row + line.rows - 1)};
-    const SampleId first{static_cast<std::int32_t>(line.column),
-                         static_cast<std::int32_t>(line.row)};
-    return sample == first || sample == last;
+    const BorderPlace first(static_cast<double>(line.column), static_cast<double>(line.row));
+    const BorderPlace last(static_cast<double>(line.column + line.columns - 1),
+                           static_cast<double>(line.row + line.rows - 1));
+    return place == first || place == last;
   }
 
   /// May another seam remove this vertex? Then each seam must leave their triangles alone.
   bool is_on_another_seam(std::uint32_t v) const {
-    const SampleId& s = strip_.samples[v];
-    if (s.column < 0 || contains(samples_of(source_.pyramid, seam_), s)) return false;
+    const BorderPlace& s = strip_.borders[v];
+    if (s.is_none() || contains(samples_of(source_.pyramid, seam_), s)) return false;
     for (const TileId& tile : {seam_.first, seam_.second()}) {
       const Window w = source_.pyramid.window(tile);
-      const bool is_at_side = s.column == w.column || s.column == w.column + w.columns - 1;
-      if (is_at_side && (s.row == w.row || s.row == w.row + w.rows - 1)) return false;
+      const auto left = static_cast<double>(w.column), top = static_cast<double>(w.row);
+      const auto right = static_cast<double>(w.column + w.columns - 1);
+      const auto bottom = static_cast<double>(w.row + w.rows - 1);
+      const bool is_at_side = s.column == left || s.column == right;
+      if (is_at_side && (s.row == top || s.row == bottom)) return false;
     }
     return source_.pyramid.is_on_seam(seam_.first, s.column, s.row) ||
            source_.pyramid.is_on_seam(seam_.second(), s.column, s.row);
@@ -252,7 +274,7 @@ class SeamBuild {
     SeamChain chain;
     for (const std::uint32_t v : chain_) {
       if (result.target[v] == v) continue;
-      chain.push_back({strip_.samples[v], strip_.samples[result.target[v]]});
+      chain.push_back({strip_.borders[v], strip_.borders[result.target[v]]});
     }
     return chain;
   }
@@ -292,6 +314,20 @@ Window bounds_of(const Strip& strip, const TileSource& source, const SeamId& sea
           high(bottom, both.rows) - row + 1};
 }
 
+/// All triangles of the tiles, to be cut.
+Strip strip_of(JoinedTiles&& joined) {
+  Strip strip{.borders = std::move(joined.borders),
+              .line_heights_m = {},
+              .points = std::move(joined.points),
+              .triangles = std::move(joined.triangles),
+              .is_on_line = {}};
+  strip.is_on_line.resize(strip.borders.size(), 0);
+  for (const hierarchy::LineEdge& edge : joined.lines) {
+    for (const std::uint32_t v : edge) strip.is_on_line[v] = 1;
+  }
+  return strip;
+}
+
 }  // namespace
 
 SeamChain build_leaf_seam(const TileSource& source, const SeamId& seam, double tolerance_m) {
@@ -300,26 +336,37 @@ SeamChain build_leaf_seam(const TileSource& source, const SeamId& seam, double t
   const Window window = unite(sides[0], sides[1]);
   const HeightGrid grid = source.heights.read(window);
   std::vector<TileMesh> meshes;
-  for (const Window& side : sides) {
-    hierarchy::GridTriangles full = hierarchy::triangulate(grid, side);
+  std::vector<std::vector<double>> heights_m;
+  const TileId tiles[] = {seam.first, seam.second()};
+  for (std::size_t k = 0; k < 2; ++k) {
+    hierarchy::LinedTriangles full =
+        hierarchy::triangulate_with_lines(grid, sides[k], lines_of(source, tiles[k]));
     TileMesh& mesh = meshes.emplace_back();
-    mesh.points.resize(full.vertices.size());
-    mesh.samples = std::move(full.vertices);
+    mesh.borders = places_of(full, sides[k]);
+    mesh.points.resize(mesh.borders.size());
+    mesh.water_m.resize(mesh.borders.size());
     mesh.triangles = std::move(full.triangles);
+    mesh.lines = std::move(full.edges);
+    heights_m.emplace_back(full.samples.size(), NAN);
+    for (const hierarchy::LineVertex& v : full.line_vertices) heights_m[k].push_back(v.height_m);
   }
   JoinedTiles joined = join(meshes);
-  Strip strip = cut_strip({std::move(joined.samples), {}, std::move(joined.triangles)},
-                          samples_of(source.pyramid, seam));
+  Strip all = strip_of(std::move(joined));
+  all.points.clear();
+  all.line_heights_m.resize(all.borders.size(), NAN);
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t v = 0; v < heights_m[k].size(); ++v) {
+      all.line_heights_m[joined.number[k][v]] = heights_m[k][v];
+    }
+  }
+  Strip strip = cut_strip(all, samples_of(source.pyramid, seam));
   if (strip.triangles.empty()) return {};
   return SeamBuild(source, seam, std::move(strip), window).run(tolerance_m);
 }
 
 SeamChain build_parent_seam(const TileSource& source, const SeamId& seam,
                             const std::vector<TileMesh>& beside, double tolerance_m) {
-  JoinedTiles joined = join(beside);
-  Strip strip =
-      cut_strip({std::move(joined.samples), std::move(joined.points), std::move(joined.triangles)},
-                samples_of(source.pyramid, seam));
+  Strip strip = cut_strip(strip_of(join(beside)), samples_of(source.pyramid, seam));
   if (strip.triangles.empty()) return {};
   const Window window = bounds_of(strip, source, seam);
   return SeamBuild(source, seam, std::move(strip), window).run(tolerance_m);

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "core/lattice_point.h"
-#include "hierarchy/mesh/grid_triangles.h"
 #include "hierarchy/mesh/halfedge_mesh.h"
 #include "tiler/tile/tile_mesh.h"
 
@@ -12,12 +11,14 @@ namespace terrane::tiler {
 /// Tiles of one level joined: one vertex where their borders meet.
 struct JoinedTiles {
   std::vector<LatticePoint> points;                ///< on the lattice of the tiles' level
-  std::vector<hierarchy::SampleId> samples;        ///< {-1, -1} inside the tiles
+  std::vector<hierarchy::BorderPlace> borders;     ///< none inside the tiles
+  std::vector<float> water_m;                      ///< NaN on land
   std::vector<hierarchy::Corners> triangles;       ///< tile by tile
+  std::vector<hierarchy::LineEdge> lines;          ///< each once
   std::vector<std::vector<std::uint32_t>> number;  ///< for each tile, for each of its vertices
 };
 
-/// Joins tiles along the samples that they share.
+/// Joins tiles along the places on borders that they share.
 JoinedTiles join(const std::vector<TileMesh>& tiles);
 
 }  // namespace terrane::tiler

@@ -5,7 +5,7 @@
 namespace terrane::tiler {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x316d616573727274;  // "trrseam1"
+constexpr std::uint64_t kMagic = 0x326d616573727274;  // "trrseam2"
 
 bool holds(const Pyramid& pyramid, const TileId& tile) {
   return tile.x >= 0 && tile.y >= 0 && pyramid.holds(tile);

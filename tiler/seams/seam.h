@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/height_grid.h"
-#include "hierarchy/mesh/grid_triangles.h"
+#include "hierarchy/mesh/border_place.h"
 #include "tiler/pyramid.h"
 #include "tiler/tile_id.h"
 
@@ -40,8 +40,8 @@ Window both_sides(const Pyramid& pyramid, const SeamId& seam);
 
 /// A border sample that a level leaves out, and the one that its vertex was collapsed into.
 struct LeftOut {
-  hierarchy::SampleId gone;
-  hierarchy::SampleId onto;
+  hierarchy::BorderPlace gone;
+  hierarchy::BorderPlace onto;
 };
 
 /// What became of a seam at its level, in order along it. Both tiles do the same.

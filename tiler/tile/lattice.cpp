@@ -37,11 +37,11 @@ double smallest_step(double extent_m, double steps) {
   return std::exp2(std::ceil(std::log2(extent_m / steps)));
 }
 
-double leaf_step(double extent_m, double tolerance_m) {
+double leaf_step(double extent_m, double largest_m) {
   // a flat DEM has no relief at all, but wants a step
   constexpr double kFinestStep_m = 1.0 / 1024;
-  const double step_m = std::min(smallest_step(extent_m, kEnoughSteps),
-                                 std::exp2(std::floor(std::log2(tolerance_m / 16))));
+  const double step_m =
+      std::min(smallest_step(extent_m, kEnoughSteps), std::exp2(std::floor(std::log2(largest_m))));
   return std::max({kFinestStep_m, step_m, smallest_step(extent_m, Lattice::kMostSteps)});
 }
 
@@ -54,7 +54,7 @@ std::int64_t halve_up(std::int64_t value, std::int64_t ratio) {
 }  // namespace
 
 Lattice::Lattice(const Pyramid& pyramid, const WorldFrame& world, const HeightStatistics& heights,
-                 double tolerance_m) {
+                 double tolerance_m, double steps_per_tolerance) {
   for (int level = 0; level < pyramid.level_count(); ++level) {
     Eigen::Vector3d largest = Eigen::Vector3d::Zero();
     for (const TileId& tile : pyramid.tiles(level)) {
@@ -63,7 +63,7 @@ Lattice::Lattice(const Pyramid& pyramid, const WorldFrame& world, const HeightSt
     largest.x() = largest.y() = std::max(largest.x(), largest.y());
     Eigen::Vector3d step_m;
     for (int axis = 0; axis < 3; ++axis) {
-      step_m[axis] = level == 0 ? leaf_step(largest[axis], tolerance_m)
+      step_m[axis] = level == 0 ? leaf_step(largest[axis], tolerance_m / steps_per_tolerance)
                                 : std::max(steps_m_[level - 1][axis],
                                            smallest_step(largest[axis], kMostSteps));
     }

@@ -23,8 +23,9 @@ class Lattice {
   /// leaf tile; finer ones cost bytes and save few triangles. Coarser levels keep them as long as
   /// kMostSteps allows: rounding a level anew moves its vertices, which steep triangles do not take
   /// well.
+  /// \param steps_per_tolerance  at least; more where lines make triangles thin and steep.
   Lattice(const Pyramid& pyramid, const WorldFrame& world, const HeightStatistics& heights,
-          double tolerance_m);
+          double tolerance_m, double steps_per_tolerance = 16);
 
   /// \param steps_m  east, north, up for each level.
   explicit Lattice(std::vector<Eigen::Vector3d> steps_m) : steps_m_(std::move(steps_m)) {}

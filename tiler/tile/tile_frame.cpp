@@ -223,6 +223,10 @@ Place TileFrame::place(GridPoint plan, double height_m) const {
   return place;
 }
 
+double TileFrame::over_datum_m(GridPoint plan, double height_m) const {
+  return height_m - drop_m(hierarchy::column_of(plan), hierarchy::row_of(plan));
+}
+
 double TileFrame::bend_m(const Place& a, const Place& b) const {
   const auto base = [this](GridPoint p) {
     return plumb(hierarchy::column_of(p), hierarchy::row_of(p)).base;

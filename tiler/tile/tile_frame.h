@@ -45,6 +45,7 @@ class TileFrame final : public hierarchy::Placer {
   hierarchy::Place place_of_finer(const LatticePoint& point) const;
 
   hierarchy::Place place(hierarchy::GridPoint plan, double height_m) const override;
+  double over_datum_m(hierarchy::GridPoint plan, double height_m) const override;
   double bend_m(const hierarchy::Place& a, const hierarchy::Place& b) const override;
   bool is_straight(const hierarchy::Place& a, const hierarchy::Place& b) const override;
 

@@ -5,7 +5,7 @@
 namespace terrane::tiler {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x32656c6974727274;  // "trrtile2"
+constexpr std::uint64_t kMagic = 0x33656c6974727274;  // "trrtile3"
 
 }  // namespace
 
@@ -14,10 +14,12 @@ void write_finished_tile(const FinishedTile& tile, const std::filesystem::path& 
   writer.add(kMagic);
   writer.add(tile.descendants);
   writer.add(tile.mesh.points);
-  writer.add(tile.mesh.samples);
+  writer.add(tile.mesh.borders);
+  writer.add(tile.mesh.water_m);
   writer.add(tile.mesh.normals);
   writer.add(tile.mesh.grounds);
   writer.add(tile.mesh.triangles);
+  writer.add(tile.mesh.lines);
   writer.add(tile.mesh.error);
   writer.write(file);
 }
@@ -28,10 +30,12 @@ FinishedTile read_finished_tile(const std::filesystem::path& file) {
   FinishedTile tile;
   tile.descendants = reader.get_vector<TileRecord>();
   tile.mesh.points = reader.get_vector<LatticePoint>();
-  tile.mesh.samples = reader.get_vector<hierarchy::SampleId>();
+  tile.mesh.borders = reader.get_vector<hierarchy::BorderPlace>();
+  tile.mesh.water_m = reader.get_vector<float>();
   tile.mesh.normals = reader.get_vector<Eigen::Vector3f>();
   tile.mesh.grounds = reader.get_vector<Ground>();
   tile.mesh.triangles = reader.get_vector<hierarchy::Corners>();
+  tile.mesh.lines = reader.get_vector<hierarchy::LineEdge>();
   tile.mesh.error = reader.get<MeasuredError>();
   return tile;
 }

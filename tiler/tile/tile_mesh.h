@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "core/lattice_point.h"
-#include "hierarchy/mesh/grid_triangles.h"
+#include "hierarchy/mesh/border_place.h"
 #include "hierarchy/mesh/halfedge_mesh.h"
+#include "hierarchy/mesh/lined_triangles.h"
 #include "tiler/tile/oriented_box.h"
 #include "tiler/tile_id.h"
 
@@ -28,11 +29,13 @@ struct Ground {
 
 /// A finished mesh of one tile at one level: just what the next level and the writer need.
 struct TileMesh {
-  std::vector<LatticePoint> points;          ///< on the lattice of the tile's level
-  std::vector<hierarchy::SampleId> samples;  ///< of outline and seam vertices; {-1, -1} inside
-  std::vector<Eigen::Vector3f> normals;      ///< unit, in the world
+  std::vector<LatticePoint> points;             ///< on the lattice of the tile's level
+  std::vector<hierarchy::BorderPlace> borders;  ///< of outline and seam vertices
+  std::vector<float> water_m;                   ///< of vertices in water its height; else NaN
+  std::vector<Eigen::Vector3f> normals;         ///< unit, in the world
   std::vector<Ground> grounds;
   std::vector<hierarchy::Corners> triangles;  ///< counter-clockwise with rows downward
+  std::vector<hierarchy::LineEdge> lines;     ///< edges that are parts of lines and shores
   MeasuredError error;
 };
 

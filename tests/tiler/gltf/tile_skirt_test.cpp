@@ -15,7 +15,7 @@ namespace {
 TileMesh left_tile() {
   TileMesh mesh;
   mesh.points = {{0, 0, 50}, {0, -16, 50}, {16, -16, 70}, {16, 0, 60}};
-  mesh.samples = {{0, 0}, {0, 4}, {4, 4}, {4, 0}};
+  mesh.borders = {{0, 0}, {0, 4}, {4, 4}, {4, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   return mesh;
 }

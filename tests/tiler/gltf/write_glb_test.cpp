@@ -17,7 +17,7 @@ namespace {
 TileMesh square() {
   TileMesh mesh;
   mesh.points = {{1000, 2000, 300}, {1000, 1990, 302}, {1010, 1990, 304}, {1010, 2000, 306}};
-  mesh.samples.resize(4);
+  mesh.borders.resize(4);
   mesh.normals.assign(4, Eigen::Vector3f::UnitZ());
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   return mesh;

@@ -43,8 +43,8 @@ TEST(Seams, ComeBackFromTheirFile) {
   write_finished_seam({{{3, 64}, {2, 64}}, {{5, 64}, {7, 64}}}, file);
   const SeamChain read = read_finished_seam(file);
   ASSERT_EQ(read.size(), 2U);
-  EXPECT_EQ(read[1].gone, (hierarchy::SampleId{5, 64}));
-  EXPECT_EQ(read[1].onto, (hierarchy::SampleId{7, 64}));
+  EXPECT_EQ(read[1].gone, (hierarchy::BorderPlace{5, 64}));
+  EXPECT_EQ(read[1].onto, (hierarchy::BorderPlace{7, 64}));
 }
 
 TEST(Seams, ADamagedFileIsAnInputErrorThatNamesIt) {
