@@ -1,20 +1,17 @@
 #!/usr/bin/env python3
 """Water and lines that a mesh keeps: flat, in place, islands and all."""
 
-import array
 import json
-import math
 import pathlib
 import subprocess
 import tempfile
 import unittest
 
-from program import DATA, terrane
+from crater_lake import SHORELINE, PlaneMap, Voids, cut_dem, is_there, read_polygon
+from plane_lines import NearestSegment, along, has_cycle, is_inside
+from program import terrane
 
 INPUT = 3
-CRATER_LAKE = DATA / "crater_lake/N42W123.hgt"
-SHORELINE = DATA / "crater_lake/crater_lake_shoreline.gpkg"
-METRES_PER_DEGREE = 111_091.57  # of latitude at 42.94 degrees: M pi / 180 on WGS84
 
 
 def read_obj(file):
@@ -29,120 +26,23 @@ def read_obj(file):
     return vertices, triangles, lines
 
 
-def along(ring, step):
-    """Points on a line, at most step apart."""
-    for (ax, ay), (bx, by) in zip(ring, ring[1:]):
-        count = math.ceil(math.hypot(bx - ax, by - ay) / step) or 1
-        for i in range(count):
-            yield ax + (bx - ax) * i / count, ay + (by - ay) * i / count
-
-
-class NearestSegment:
-    """Distances to segments, found by way of a grid of square bins."""
-
-    def __init__(self, segments, bin_size):
-        self.bin_size, self.bins = bin_size, {}
-        for segment in segments:
-            for x, y in {self.bin(p) for p in along(segment, bin_size / 2)} | {
-                    self.bin(segment[1])}:
-                for i in (-1, 0, 1):
-                    for j in (-1, 0, 1):
-                        self.bins.setdefault((x + i, y + j), []).append(segment)
-
-    def bin(self, point):
-        return int(point[0] // self.bin_size), int(point[1] // self.bin_size)
-
-    def distance(self, point):
-        """Infinite where it is more than a bin's size."""
-        return min((self.to_segment(point, s) for s in self.bins.get(self.bin(point), ())),
-                   default=math.inf)
-
-    @staticmethod
-    def to_segment(p, segment):
-        (ax, ay), (bx, by) = segment
-        dx, dy = bx - ax, by - ay
-        length2 = dx * dx + dy * dy
-        t = ((p[0] - ax) * dx + (p[1] - ay) * dy) / length2 if length2 else 0
-        t = min(1, max(0, t))
-        return math.hypot(p[0] - ax - t * dx, p[1] - ay - t * dy)
-
-
-def is_inside(point, rings):
-    x, y = point
-    crossings = 0
-    for ring in rings:
-        for (ax, ay), (bx, by) in zip(ring, ring[1:]):
-            crossings += (ay <= y) != (by <= y) and x < ax + (y - ay) * (bx - ax) / (by - ay)
-    return crossings % 2 == 1
-
-
-def has_cycle(lines):
-    """Do the edges close around something? As many edges as vertices, or more, in one part."""
-    part = {v: v for line in lines for v in line}
-
-    def root(v):
-        while part[v] != v:
-            v = part[v]
-        return v
-    for a, b in lines:
-        if root(a) == root(b):
-            return True
-        part[root(a)] = root(b)
-    return False
-
-
-class Voids:
-    """Samples of N42W123.hgt without data."""
-
-    SIDE, CELLS_PER_DEGREE, VOID = 1201, 1200, -32768
-
-    def __init__(self):
-        heights = array.array("h", CRATER_LAKE.read_bytes())
-        heights.byteswap()
-        self.voids = {divmod(i, self.SIDE) for i, h in enumerate(heights) if h == self.VOID}
-
-    def beside(self, longitude, latitude, rings):
-        """Is a sample of the cell void, and on land, so that water does not fill it?"""
-        column, row = (longitude + 123) * self.CELLS_PER_DEGREE, (43 - latitude) * self.CELLS_PER_DEGREE
-        corners = {(int(row) + j, int(column) + i) for i in (0, 1) for j in (0, 1)} & self.voids
-        return any(not is_inside((c / self.CELLS_PER_DEGREE - 123, 43 - r / self.CELLS_PER_DEGREE),
-                                 rings) for r, c in corners)
-
-
 class CraterLake(unittest.TestCase):
     """The whole lake with its five islands, on SRTM at 3 arc-seconds."""
 
-    def polygon(self, folder):
-        """Rings in degrees: the shore, then islands."""
-        file = folder / "shore.json"
-        subprocess.run(["ogr2ogr", "-f", "GeoJSON", file, SHORELINE, "-lco",
-                        "COORDINATE_PRECISION=9"], check=True)
-        geometry = json.loads(file.read_text())["features"][0]["geometry"]
-        rings = geometry["coordinates"]
-        return rings[0] if geometry["type"] == "MultiPolygon" else rings
-
     def check(self, tolerance_m):
-        if not CRATER_LAKE.exists() or not SHORELINE.exists():
+        if not is_there():
             self.skipTest("Crater Lake is not there")
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            mesh, dem = folder / "lake.obj", folder / "lake.tif"
-            subprocess.run(["gdal_translate", "-q", "-srcwin", "985", "5", "180", "130",
-                            CRATER_LAKE, dem], check=True)
-            status, _, said = terrane("--quiet", "simplify", dem, "--water", SHORELINE,
+            mesh = folder / "lake.obj"
+            status, _, said = terrane("--quiet", "simplify", cut_dem(folder), "--water", SHORELINE,
                                       "--tolerance", tolerance_m, "-o", mesh)
             self.assertEqual((status, said), (0, ""))
             vertices, triangles, lines = read_obj(mesh)
-            degrees = self.polygon(folder)
+            degrees = read_polygon(folder)
         voids = Voids()
 
-        # a flat map in metres, exact to a thousandth over the lake
-        west, north = degrees[0][0][:2]
-        east_m = METRES_PER_DEGREE * 1.0036 * math.cos(math.radians(42.94))
-
-        def metres(p):
-            return (p[0] - west) * east_m, (p[1] - north) * METRES_PER_DEGREE
-
+        metres = PlaneMap(degrees[0][0])
         rings = [[metres(p) for p in ring] for ring in degrees]
         flat = [metres(v) for v in vertices]
 
