@@ -60,11 +60,13 @@ void run(const viewer::ServeOptions& options, const CommonOptions& common) {
 
 void add_serve_command(CLI::App& app, const CommonOptions& common) {
   auto options = std::make_shared<viewer::ServeOptions>();
-  CLI::App* serve = app.add_subcommand("serve", "Show output folders and archives in the browser");
+  CLI::App* serve =
+      app.add_subcommand("serve", "Show output folders, archives and merge trees in the browser");
   serve
-      ->add_option(
-          "out", options->data,
-          "Folders that terrane build wrote, or archives; several get a page that lists them")
+      ->add_option("out", options->data,
+                   "Folders that terrane build wrote, archives or merge trees; several get a page "
+                   "that lists "
+                   "them")
       ->required();
   CLI::Option* port =
       serve->add_option("--port", options->port, "Port; without this, the next free one from 8080")

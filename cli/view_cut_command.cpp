@@ -43,17 +43,6 @@ struct Cut {
 
 Eigen::Vector3d vector_of(const std::vector<double>& xyz) { return {xyz[0], xyz[1], xyz[2]}; }
 
-/// Middle and half the diagonal of the box about the tree's vertices.
-std::pair<Eigen::Vector3d, double> middle_and_reach(const MergeTree& tree) {
-  Eigen::Vector3i low = tree.points.front(), high = low;
-  for (const Eigen::Vector3i& p : tree.points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const Eigen::Vector3d a = tree.lattice.relative(low), b = tree.lattice.relative(high);
-  return {(a + b) / 2, (b - a).norm() / 2};
-}
-
 Camera camera_of(const ViewCutCommand& command, const MergeTree& tree) {
   if (!(command.fov_deg > 0 && command.fov_deg < 180)) {
     throw ConfigError(fmt::format("--fov {}: has to be above 0 and below 180", command.fov_deg));
@@ -61,7 +50,7 @@ Camera camera_of(const ViewCutCommand& command, const MergeTree& tree) {
   if (!(command.size_px[0] >= 1 && command.size_px[1] >= 1)) {
     throw ConfigError("--size: a picture is 1 pixel wide and high at least");
   }
-  const auto [middle, reach] = middle_and_reach(tree);
+  const auto [middle, reach] = extent_of(tree);
   const Eigen::Vector3d& origin = tree.lattice.origin();
   const Eigen::Vector3d target =
       command.target.empty() ? middle : Eigen::Vector3d(vector_of(command.target) - origin);

@@ -22,6 +22,7 @@ MAY_INCLUDE = {
     "archive": {"core"},
     "tiler/welded": {"core", "tiler/verify"},  # reads tiles, builds none
     "viewer": {"core", "tiler", "archive"},
+    "viewer/engine": {"core", "hierarchy"},
     "cli": {"core", "archive", "ingest", "hierarchy", "model", "tiler", "tiler/verify",
             "tiler/welded", "viewer"},
 }

@@ -11,7 +11,7 @@ constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
 std::vector<ChangedRange> ranges_of(std::vector<std::uint32_t> changed, std::uint32_t size,
                                     std::uint32_t gap) {
-  std::ranges::sort(changed);
+  std::sort(changed.begin(), changed.end());
   std::vector<ChangedRange> ranges;
   for (const std::uint32_t i : changed) {
     if (i >= size) break;
@@ -46,7 +46,7 @@ void DisplayMesh::show_vertex(std::uint32_t vertex) {
   slot_[vertex] = slot;
   ++vertex_count_;
   const Eigen::Vector3f& n = tree_.normals[vertex];
-  std::copy_n(n.data(), 3, normals_.begin() + 3 * std::ptrdiff_t{slot});
+  std::copy_n(n.data(), 3, normals_.begin() + std::ptrdiff_t(3) * slot);
   move(vertex, tree_.place(vertex));
 }
 
@@ -59,7 +59,7 @@ void DisplayMesh::hide_vertex(std::uint32_t vertex) {
 void DisplayMesh::move(std::uint32_t vertex, const Eigen::Vector3f& place) {
   const std::uint32_t slot = slot_[vertex];
   assert(slot != kNone);
-  std::copy_n(place.data(), 3, positions_.begin() + 3 * std::ptrdiff_t{slot});
+  std::copy_n(place.data(), 3, positions_.begin() + std::ptrdiff_t(3) * slot);
   changed_slots_.push_back(slot);
 }
 

@@ -29,7 +29,7 @@ TreeGrower::TreeGrower(MergeTree tree) : tree_(std::move(tree)) {
   tree_.coarser_begin.push_back(0);
   for (std::uint32_t t = 0; t < tree_.triangles.size(); ++t) {
     const Corners& c = tree_.triangles[t];
-    if (std::ranges::max(c) >= tree_.points.size()) damaged();
+    if (std::max({c[0], c[1], c[2]}) >= tree_.points.size()) damaged();
     if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) damaged();
     for (const std::uint32_t v : c) incident_[v].push_back(t);
   }
@@ -45,9 +45,13 @@ std::vector<TreeGrower::RingEdge> TreeGrower::ring_edges(std::uint32_t vertex) c
   }
   if (edges.empty()) damaged();
   // start: the edge that no other leads to; on a closed ring the one from the smallest number
-  auto first = std::ranges::min_element(edges, {}, &RingEdge::from);
+  auto first =
+      std::min_element(edges.begin(), edges.end(),
+                       [](const RingEdge& a, const RingEdge& b) { return a.from < b.from; });
   for (auto edge = edges.begin(); edge != edges.end(); ++edge) {
-    if (std::ranges::find(edges, edge->from, &RingEdge::to) == edges.end()) first = edge;
+    if (std::none_of(edges.begin(), edges.end(),
+                     [&](const RingEdge& e) { return e.to == edge->from; }))
+      first = edge;
   }
   std::iter_swap(edges.begin(), first);
   for (std::size_t i = 1; i < edges.size(); ++i) {
@@ -100,7 +104,9 @@ void TreeGrower::choose_owners(const Split& split, std::span<const std::uint32_t
     const std::uint32_t begin = split.apexes[k], end = split.apexes[(k + 1) % arcs];
     if (begin == end) continue;
     auto at =
-        static_cast<std::size_t>(std::ranges::find(ring_, begin, &RingEdge::from) - ring_.begin());
+        static_cast<std::size_t>(std::find_if(ring_.begin(), ring_.end(),
+                                              [&](const RingEdge& e) { return e.from == begin; }) -
+                                 ring_.begin());
     if (at == ring_.size()) damaged();
     for (;;) {
       if (owners_[at] != kNone) damaged();
@@ -124,7 +130,7 @@ void TreeGrower::add_triangle(const Corners& corners) {
 
 void TreeGrower::remove_from(std::uint32_t vertex, std::uint32_t triangle) {
   auto& list = incident_[vertex];
-  list.erase(std::ranges::find(list, triangle));
+  list.erase(std::find(list.begin(), list.end(), triangle));
 }
 
 void TreeGrower::depend_on_triangle(std::uint32_t triangle) {
@@ -158,9 +164,9 @@ void TreeGrower::replace_triangles(std::uint32_t parent) {
 }
 
 void TreeGrower::end_dependencies(std::uint32_t level) {
-  std::ranges::sort(needed_);
-  const auto rest = std::ranges::unique(needed_);
-  needed_.erase(rest.begin(), rest.end());
+  std::sort(needed_.begin(), needed_.end());
+  const auto rest = std::unique(needed_.begin(), needed_.end());
+  needed_.erase(rest, needed_.end());
   for (const std::uint32_t j : needed_) {
     if (tree_.merges[j].level <= level) damaged();
     tree_.coarser_merges.push_back(j);

@@ -7,13 +7,12 @@
 #include <limits>
 #include <numbers>
 
+#include "hierarchy/merge/normal_code.h"
 #include "hierarchy/merge/sample_lists.h"
 #include "hierarchy/merge/surface_normals.h"
 
 namespace terrane::hierarchy {
 namespace {
-
-constexpr double kOctahedralSteps = 32767;
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -189,30 +188,6 @@ float rounded_up(double value) {
   if (nearest < value) nearest = std::nextafter(nearest, std::numeric_limits<float>::infinity());
   const auto bits = std::bit_cast<std::uint32_t>(nearest);
   return std::bit_cast<float>((bits + 0xffffU) & 0xffff0000U);
-}
-
-std::uint32_t encoded_normal(const Eigen::Vector3d& unit) {
-  const Eigen::Vector3d n = unit / unit.cwiseAbs().sum();
-  double x = n.x(), y = n.y();
-  if (n.z() < 0) {
-    x = (1 - std::abs(n.y())) * (n.x() < 0 ? -1 : 1);
-    y = (1 - std::abs(n.x())) * (n.y() < 0 ? -1 : 1);
-  }
-  const auto code = [](double value) {
-    return static_cast<std::uint32_t>(std::lround((value + 1) * kOctahedralSteps));
-  };
-  return code(x) << 16 | code(y);
-}
-
-Eigen::Vector3f decoded_normal(std::uint32_t code) {
-  double x = (code >> 16) / kOctahedralSteps - 1, y = (code & 0xffff) / kOctahedralSteps - 1;
-  const double z = 1 - std::abs(x) - std::abs(y);
-  if (z < 0) {
-    const double old = x;
-    x = (1 - std::abs(y)) * (x < 0 ? -1 : 1);
-    y = (1 - std::abs(old)) * (y < 0 ? -1 : 1);
-  }
-  return Eigen::Vector3d(x, y, z).normalized().cast<float>();
 }
 
 }  // namespace terrane::hierarchy

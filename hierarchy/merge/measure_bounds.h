@@ -23,8 +23,4 @@ void measure_bounds(MergeTree& tree);
 /// \pre value is 0 or more and finite.
 float rounded_up(double value);
 
-/// The nearest normal that a file holds: octahedral coordinates of 16 bits each.
-Eigen::Vector3f decoded_normal(std::uint32_t code);
-std::uint32_t encoded_normal(const Eigen::Vector3d& unit);
-
 }  // namespace terrane::hierarchy

@@ -14,6 +14,17 @@ std::uint32_t MergeTree::full_point_count() const {
   return count;
 }
 
+TreeExtent extent_of(const MergeTree& tree) {
+  if (tree.points.empty()) return {Eigen::Vector3d::Zero(), 0};
+  Eigen::Vector3i low = tree.points.front(), high = low;
+  for (const Eigen::Vector3i& p : tree.points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Eigen::Vector3d a = tree.lattice.relative(low), b = tree.lattice.relative(high);
+  return {(a + b) / 2, (b - a).norm() / 2};
+}
+
 std::vector<bool> full_triangles(const MergeTree& tree) {
   std::vector<bool> is_full(tree.triangles.size(), true);
   for (const std::uint32_t t : tree.coarse_triangles) is_full[t] = false;

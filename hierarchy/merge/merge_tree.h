@@ -112,6 +112,13 @@ struct MergeTree {
   }
 };
 
+/// The box about all places of a tree, relative to its lattice's origin.
+struct TreeExtent {
+  Eigen::Vector3d middle;
+  double reach;  ///< half its diagonal
+};
+TreeExtent extent_of(const MergeTree& tree);
+
 /// Is each triangle of the full mesh? By id.
 std::vector<bool> full_triangles(const MergeTree& tree);
 

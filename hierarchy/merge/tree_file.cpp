@@ -10,7 +10,7 @@
 #include "core/errors.h"
 #include "hierarchy/levels/level_sequence.h"
 #include "hierarchy/merge/grow_tree.h"
-#include "hierarchy/merge/measure_bounds.h"
+#include "hierarchy/merge/normal_code.h"
 #include "hierarchy/merge/packed_numbers.h"
 
 namespace terrane::hierarchy {
@@ -115,8 +115,8 @@ void write_merge(const MergeTree& tree, std::uint32_t i, const TreeGrower& growe
   previous = {merge.level, merge.parent};
   const auto ring = grower.ring(merge.parent);
   for (std::size_t k = 0; k < (merge.child_count == 1 ? 2 : 3); ++k) {
-    writer.number(
-        static_cast<std::uint64_t>(std::ranges::find(ring, split.apexes[k]) - ring.begin()));
+    writer.number(static_cast<std::uint64_t>(std::find(ring.begin(), ring.end(), split.apexes[k]) -
+                                             ring.begin()));
   }
   for (std::uint32_t k = 0; k < merge.child_count; ++k) {
     writer.difference(split.places[k], tree.points[merge.parent]);

@@ -14,6 +14,7 @@ TEST(MediaTypeOf, KnowsWhatAnOutputFolderHolds) {
   EXPECT_EQ(media_type_of("0/0/0.terrain").name, "application/vnd.quantized-mesh");
   EXPECT_EQ(media_type_of("build.toml").name, "text/plain; charset=utf-8");
   EXPECT_EQ(media_type_of("decoder.wasm").name, "application/wasm");
+  EXPECT_EQ(media_type_of("bunny.tree").name, "application/vnd.terrane.merge-tree");
   EXPECT_EQ(media_type_of("drape.PNG").name, "image/png");
   EXPECT_EQ(media_type_of("icon.svg").name, "image/svg+xml");
 }

@@ -104,6 +104,33 @@ TEST(ServeSeveral, ListsThemAndServesEachBelowItsName) {
   EXPECT_EQ(server.server().data_urls().size(), 3u);
 }
 
+TEST(ServeTree, IsOneFileWithTheViewerAroundIt) {
+  const TemporaryFolder folder;
+  folder.write("trees/a bunny.tree", "TERRTREE");
+  folder.write("trees/secret.txt", "secret");
+  const RunningServer server({.data = {folder.path() / "trees/a bunny.tree"}});
+  EXPECT_THAT(server.server().data_urls().front(), ::testing::EndsWith("/?tree=a%20bunny.tree"));
+  const auto tree = request_raw(server.port(), "GET", "/a%20bunny.tree");
+  EXPECT_EQ(tree.body, "TERRTREE");
+  EXPECT_EQ(request_raw(server.port(), "GET", "/secret.txt").status, 404);
+  for (const auto& files : {viewer_files(), tree_page_files(), engine_files()}) {
+    for (const ViewerFile& file : files) {
+      EXPECT_EQ(request_raw(server.port(), "GET", "/" + std::string(file.path)).status, 200);
+    }
+  }
+}
+
+TEST(ServeTree, AFolderOfTreesHasTheViewerToo) {
+  if (viewer_files().empty()) GTEST_SKIP() << "built without the viewer (TERRANE_WEB=OFF)";
+  const TemporaryFolder folder;
+  folder.write("trees/bunny.tree", "TERRTREE");
+  folder.write("plain/readme.txt", "nothing to see");
+  const RunningServer trees({.data = {folder.path() / "trees"}});
+  EXPECT_EQ(request_raw(trees.port(), "GET", "/assets/tree_page.js").status, 200);
+  const RunningServer plain({.data = {folder.path() / "plain"}});
+  EXPECT_EQ(request_raw(plain.port(), "GET", "/assets/tree_page.js").status, 404);
+}
+
 TEST(ServeSeveral, LeadsToTheFolderWhereTheSlashIsMissing) {
   const TemporaryFolder folder;
   write_tile_set(folder, "a");

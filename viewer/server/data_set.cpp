@@ -8,6 +8,7 @@
 
 #include "archive/archive.h"
 #include "core/errors.h"
+#include "viewer/server/url_path.h"
 #include "viewer/server/viewer_files.h"
 
 namespace terrane::viewer {
@@ -25,17 +26,32 @@ std::string name_of(const fs::path& path, bool is_archive) {
 std::optional<DataSetFile> find_viewer_file(std::string_view path) {
   static const std::vector<DataSetFile> files = [] {
     std::vector<DataSetFile> made;
-    for (const ViewerFile& file : viewer_files()) {
-      made.push_back({.name = std::string(file.path),
-                      .content = FileContent(std::string(file.content)),
-                      .tag = fmt::format("viewer-{:x}-{:x}", file.content.size(),
-                                         std::hash<std::string_view>()(file.content))});
+    for (const auto& part : {viewer_files(), tree_page_files(), engine_files()}) {
+      for (const ViewerFile& file : part) {
+        made.push_back({.name = std::string(file.path),
+                        .content = FileContent(std::string(file.content)),
+                        .tag = fmt::format("viewer-{:x}-{:x}", file.content.size(),
+                                           std::hash<std::string_view>()(file.content))});
+      }
     }
     return made;
   }();
   const std::string_view name = path == "/" ? "index.html" : path.substr(1);
   const auto found = std::ranges::find(files, name, &DataSetFile::name);
   return found == files.end() ? std::nullopt : std::optional(*found);
+}
+
+bool is_tree(const fs::path& path) { return path.extension() == ".tree"; }
+
+/// A file below a folder, as it lies there.
+std::optional<DataSetFile> find_below(const fs::path& root, std::string_view path) {
+  auto file = open_served_file(root, path);
+  if (!file) return std::nullopt;
+  const OpenFile& content = *file->content;
+  return DataSetFile{.name = file->path.lexically_relative(root).generic_string(),
+                     .content = {file->content, {0, content.bytes()}},
+                     .tag = fmt::format("{:x}-{:x}", content.modified_ns(), content.bytes()),
+                     .modified_ns = content.modified_ns()};
 }
 
 class FolderDataSet final : public DataSet {
@@ -45,19 +61,37 @@ class FolderDataSet final : public DataSet {
   }
 
   std::optional<DataSetFile> find(std::string_view path) const override {
-    auto file = open_served_file(root_, path);
-    if (!file) return has_tileset() ? find_viewer_file(path) : std::nullopt;
-    const OpenFile& content = *file->content;
-    return DataSetFile{.name = file->path.lexically_relative(root_).generic_string(),
-                       .content = {file->content, {0, content.bytes()}},
-                       .tag = fmt::format("{:x}-{:x}", content.modified_ns(), content.bytes()),
-                       .modified_ns = content.modified_ns()};
+    auto file = find_below(root_, path);
+    return file || !is_to_see() ? std::move(file) : find_viewer_file(path);
   }
 
  private:
-  bool has_tileset() const { return fs::exists(root_ / "tileset.json"); }
+  /// Is there something that the viewer shows?
+  bool is_to_see() const {
+    if (fs::exists(root_ / "tileset.json")) return true;
+    std::error_code error;
+    return std::ranges::any_of(fs::directory_iterator(root_, error),
+                               [](const fs::directory_entry& entry) { return is_tree(entry); });
+  }
 
   fs::path root_;
+};
+
+/// One merge tree, with the viewer around it.
+class TreeDataSet final : public DataSet {
+ public:
+  explicit TreeDataSet(const fs::path& file) : path_(fs::canonical(file)) {
+    name_ = name_of(file, /*is_archive=*/true);
+    query_ = "?tree=" + encode_url_path(path_.filename().string());
+  }
+
+  std::optional<DataSetFile> find(std::string_view path) const override {
+    const bool is_it = path == "/" + path_.filename().string();
+    return is_it ? find_below(path_.parent_path(), path) : find_viewer_file(path);
+  }
+
+ private:
+  fs::path path_;
 };
 
 class ArchiveDataSet final : public DataSet {
@@ -115,10 +149,14 @@ class ArchiveDataSet final : public DataSet {
 std::unique_ptr<DataSet> open_data_set(const fs::path& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) return std::make_unique<FolderDataSet>(path);
+  if (fs::is_regular_file(path, error) && is_tree(path)) {
+    return std::make_unique<TreeDataSet>(path);
+  }
   if (fs::is_regular_file(path, error)) return std::make_unique<ArchiveDataSet>(path);
-  throw InputError(fmt::format(
-      "{}: no such folder or archive. Give what 'terrane build' or 'terrane pack' wrote",
-      path.string()));
+  throw InputError(
+      fmt::format("{}: no such folder, archive or tree. Give what 'terrane build', 'pack' or "
+                  "'merge-tree' wrote",
+                  path.string()));
 }
 
 }  // namespace terrane::viewer

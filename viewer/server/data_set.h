@@ -33,18 +33,23 @@ class DataSet {
   /// "st_helens" of /data/st_helens/ or /data/st_helens.pmtiles.
   const std::string& name() const { return name_; }
 
+  /// What to add to its address to see it: nothing, or "?tree=bunny.tree".
+  const std::string& query() const { return query_; }
+
   /// The name under which the archive itself is served; empty for a folder.
   const std::string& archive_name() const { return archive_name_; }
 
  protected:
   std::string name_;
   std::string archive_name_;
+  std::string query_;
 };
 
-/// Opens an output folder, or an archive that terrane packed.
+/// Opens an output folder, an archive that terrane packed, or a merge tree (.tree).
 ///
-/// Where it has no viewer of its own, but a tileset.json, the viewer of this binary is added. An
-/// archive is also served itself, under its file name. \throws InputError if it is neither.
+/// Where it has no viewer of its own, but a tileset.json or a tree, the viewer of this binary is
+/// added. An archive is also served itself, under its file name.
+/// \throws InputError if it is none of them.
 std::unique_ptr<DataSet> open_data_set(const std::filesystem::path& path);
 
 }  // namespace terrane::viewer

@@ -95,7 +95,7 @@ std::string describe(const IndexEntry& entry) {
   if (const std::string summary = summary_of(*entry.data); !summary.empty()) {
     item += fmt::format("<small>{}</small><br>\n", escaped(summary));
   }
-  if (entry.data->find("/")) item += link(entry.url, "view");
+  if (entry.data->find("/")) item += link(entry.url + entry.data->query(), "view");
   for (const Document& document : kDocuments) {
     if (entry.data->find("/" + std::string(document.file))) {
       item += link(entry.url + std::string(document.file), document.label);

@@ -50,6 +50,7 @@ constexpr std::array kMediaTypes = {
     Known{".toml", text("text/plain; charset=utf-8")},
     Known{".txt", text("text/plain; charset=utf-8")},
     Known{".xml", text("application/xml")},
+    Known{".tree", archive("application/vnd.terrane.merge-tree")},
     Known{".pmtiles", archive("application/vnd.pmtiles")},
     Known{".3tz", archive("application/vnd.maxar.archive.3tz+zip")},
 };

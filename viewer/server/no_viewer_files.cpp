@@ -5,5 +5,6 @@ namespace terrane::viewer {
 
 std::span<const ViewerFile> viewer_files() { return {}; }
 std::span<const ViewerFile> volume_page_files() { return {}; }
+std::span<const ViewerFile> tree_page_files() { return {}; }
 
 }  // namespace terrane::viewer

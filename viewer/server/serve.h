@@ -9,7 +9,7 @@ namespace terrane::viewer {
 
 /// What is served, where, and within which limits.
 struct ServeOptions {
-  std::vector<std::filesystem::path> data;  ///< output folders and archives; at least one
+  std::vector<std::filesystem::path> data;  ///< output folders, archives, trees; at least one
   std::string bind = "127.0.0.1";    ///< address or host name of this machine; 0.0.0.0 for everyone
   int port = 8080;                   ///< 0 to 65535; 0 takes any free one
   bool next_free_port = true;        ///< where the port is taken, try the 50 that follow it

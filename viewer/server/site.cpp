@@ -48,7 +48,9 @@ std::optional<std::string> Site::redirect(std::string_view path) const {
 
 std::vector<std::string> Site::paths() const {
   std::vector<std::string> paths;
-  for (const Mount& mount : mounts_) paths.push_back(encode_url_path(mount.prefix) + "/");
+  for (const Mount& mount : mounts_) {
+    paths.push_back(encode_url_path(mount.prefix) + "/" + mount.data->query());
+  }
   return paths;
 }
 

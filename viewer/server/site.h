@@ -24,7 +24,7 @@ class Site {
   /// Where "/NAME" without a slash leads: "/NAME/", encoded.
   std::optional<std::string> redirect(std::string_view path) const;
 
-  /// Paths of the data sets, encoded: "/", or "/NAME/" each.
+  /// Where the data sets show, encoded: "/", or "/NAME/" each, and what their pages ask for.
   std::vector<std::string> paths() const;
 
  private:

@@ -18,6 +18,11 @@ std::span<const ViewerFile> viewer_files();
 /// The page that cuts volumes, likewise.
 std::span<const ViewerFile> volume_page_files();
 
+/// What the viewer loads beside viewer_files() where it shows a merge tree (`?tree=`): its page,
+/// and the engine in WebAssembly, which is empty if it was built without (TERRANE_WASM=OFF).
+std::span<const ViewerFile> tree_page_files();
+std::span<const ViewerFile> engine_files();
+
 /// Writes viewer_files() below a folder, which is made if it is missing. Each file gets a
 /// temporary name first and is then renamed, so that none is ever half-written; a file that holds
 /// the same content already is left alone.

@@ -82,8 +82,18 @@ function apiOf(session: Session, tileset: Tileset): TerraneApi {
  * default ./tileset.json), tolerance (pixels; default 1), antialias (off for slow machines), path
  * (address of a camera path to fly along). The hash is the permalink.
  */
+/** By its address: what Vite makes of an import by name would cost every page half a kilobyte. */
+async function showTree(parameters: URLSearchParams): Promise<void> {
+  const address = import.meta.env.DEV
+    ? '/src/tree/tree_page.ts'
+    : new URL(/* @vite-ignore */ 'tree_page.js', import.meta.url).href;
+  const page = (await import(/* @vite-ignore */ address)) as typeof import('./tree/tree_page');
+  return page.showTree(parameters);
+}
+
 async function start(): Promise<void> {
   const parameters = new URLSearchParams(location.search);
+  if (parameters.has('tree')) return showTree(parameters);
   const source =
     (await sourceOfPage(parameters)) ?? (await chooseSource('Choose a terrain to look at.'));
   const tileset = await readTileset(source);
