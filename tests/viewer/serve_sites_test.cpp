@@ -12,6 +12,7 @@
 #include "tests/viewer/gunzip.h"
 #include "tests/viewer/raw_http.h"
 #include "tests/viewer/running_server.h"
+#include "viewer/server/viewer_files.h"
 
 namespace terrane::viewer {
 namespace {
