@@ -18,7 +18,10 @@ constexpr std::int64_t kLanes = 4;
 using Lanes = stdx::simd<float, stdx::simd_abi::deduce_t<float, kLanes>>;
 
 // what single precision may be off by, as a share of the largest area times the largest height
-constexpr double kDoubt = 4e-6;
+constexpr double kDoubt = 8e-6;
+
+// splits that four samples take together before each is looked at alone
+constexpr int kSplitsAtOnce = 3;
 
 using Quadratic = std::array<double, 3>;
 using Cubic = std::array<double, 4>;
@@ -29,12 +32,12 @@ Cubic elevated(const Quadratic& q) {
 }
 
 /// The halves of a polynomial in Bernstein form (de Casteljau): the first one, and \p p the second.
-template <std::size_t N>
-std::array<double, N> split(std::array<double, N>& p) {
-  std::array<double, N> first;
+template <class Value, std::size_t N>
+std::array<Value, N> split(std::array<Value, N>& p) {
+  std::array<Value, N> first;
   for (std::size_t left = N; left > 0; --left) {
     first[N - left] = p[0];
-    for (std::size_t i = 0; i + 1 < left; ++i) p[i] = (p[i] + p[i + 1]) / 2;
+    for (std::size_t i = 0; i + 1 < left; ++i) p[i] = (p[i] + p[i + 1]) * Value(0.5F);
   }
   return first;
 }
@@ -96,16 +99,16 @@ MovingTriangle::MovingTriangle(const std::array<FieldPoint, 3>& from,
                   (a.per_row + b.per_row) / 2};
   };
   whole_ = {0, 0, 0};
-  double longest = 0;
+  double longest2 = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t p = (k + 1) % 3, q = (k + 2) % 3;
     areas_[k] = {area(from[p], from[q]), mean(area(from[p], to[q]), area(to[p], from[q])),
                  area(to[p], to[q])};
     for (std::size_t i = 0; i < 3; ++i) whole_[i] += areas_[k][i].constant;
-    longest =
-        std::max(longest, std::hypot(from[p].column - from[q].column, from[p].row - from[q].row));
+    const double x = from[p].column - from[q].column, y = from[p].row - from[q].row;
+    longest2 = std::max(longest2, x * x + y * y);
   }
-  slack_ = slack_cells * longest / whole_[0];
+  slack_ = slack_cells * std::sqrt(longest2) / whole_[0];
 }
 
 bool MovingTriangle::stays_within(const FieldSample& sample, double tolerance_m) const {
@@ -136,12 +139,17 @@ bool MovingTriangle::stays_within(const FieldSample& sample, double tolerance_m)
   return true;
 }
 
-/// Goes through rows of samples, four at once in single precision. What that cannot clear of all
-/// doubt is judged one by one.
-class MovingTriangle::RowSweep {
+int MovingTriangle::meeting_corners() const {
+  const int pairs = is_same(to_[0], to_[1]) + is_same(to_[1], to_[2]) + is_same(to_[2], to_[0]);
+  return pairs == 0 ? 0 : pairs == 1 ? 2 : 3;
+}
+
+/// Goes through samples, four at once in single precision. What that cannot clear of all doubt is
+/// judged one by one.
+class MovingTriangle::Sweep {
  public:
-  RowSweep(const MovingTriangle& triangle, double tolerance_m)
-      : triangle_(triangle), tolerance_m_(tolerance_m) {
+  Sweep(const MovingTriangle& triangle, double tolerance_m)
+      : triangle_(triangle), tolerance_m_(tolerance_m), meeting_(triangle.meeting_corners()) {
     double reach = 0, relief_m = tolerance_m;
     const FieldPoint& origin = triangle.from_[0];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -153,31 +161,30 @@ class MovingTriangle::RowSweep {
       first_m_[k] = static_cast<float>(triangle.from_[k].height_m - origin.height_m);
       last_m_[k] = static_cast<float>(triangle.to_[k].height_m - origin.height_m);
       for (std::size_t i = 0; i < 3; ++i) {
+        constant_[k][i] = static_cast<float>(triangle.areas_[k][i].constant);
         per_column_[k][i] = static_cast<float>(triangle.areas_[k][i].per_column);
+        per_row_[k][i] = static_cast<float>(triangle.areas_[k][i].per_row);
       }
     }
     const double area_doubt = kDoubt * (reach + 4) * (reach + 4);
     const std::array<double, 3>& whole = triangle.whole_;
     const Cubic raised = elevated(whole);
     for (std::size_t i = 0; i < 4; ++i) {
-      room_[i] = static_cast<float>(tolerance_m * raised[i] - 8 * area_doubt * relief_m);
+      limits_.room[i] = static_cast<float>(tolerance_m * raised[i] - 8 * area_doubt * relief_m);
     }
+    for (std::size_t i = 4 - vanishing(); i < 4; ++i) limits_.room[i] = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      outside_[i] = static_cast<float>(-triangle.slack_ * std::max(0.0, whole[i]) - area_doubt);
+      limits_.outside[i] =
+          static_cast<float>(-triangle.slack_ * std::max(0.0, whole[i]) - area_doubt);
     }
     highest_m_ = static_cast<float>(2 * (relief_m + tolerance_m));
   }
 
+  /// Part of a row of a field.
   bool operator()(const SampleField& field, std::int64_t row, std::int64_t first,
-                  std::int64_t last) {
+                  std::int64_t last) const {
     const FieldPoint& origin = triangle_.from_[0];
-    const double y = static_cast<double>(row) - origin.row;
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        const Affine& area = triangle_.areas_[k][i];
-        at_row_[k][i] = static_cast<float>(area.constant + y * area.per_row);
-      }
-    }
+    const Lanes y = static_cast<float>(static_cast<double>(row) - origin.row);
     const double* heights = field.row(row);
     for (std::int64_t column = first; column <= last; column += kLanes) {
       const std::int64_t end = std::min(column + kLanes, last + 1);
@@ -189,9 +196,10 @@ class MovingTriangle::RowSweep {
         const std::int64_t at = std::min(column + static_cast<std::int64_t>(lane), end - 1);
         return static_cast<float>(static_cast<double>(at) - origin.column);
       });
-      if (is_cleared(x, height_m)) continue;
+      const Mask in_doubt = !are_cleared(x, y, height_m);
+      if (stdx::none_of(in_doubt)) continue;
       for (std::int64_t at = column; at < end; ++at) {
-        if (std::isnan(heights[at])) continue;
+        if (!in_doubt[static_cast<std::size_t>(at - column)] || std::isnan(heights[at])) continue;
         const FieldSample sample{static_cast<float>(at), static_cast<float>(row), heights[at]};
         if (!triangle_.stays_within(sample, tolerance_m_)) return false;
       }
@@ -199,32 +207,98 @@ class MovingTriangle::RowSweep {
     return true;
   }
 
+  /// Any samples that have heights.
+  bool operator()(std::span<const FieldSample> samples) const {
+    const FieldPoint& origin = triangle_.from_[0];
+    for (std::size_t first = 0; first < samples.size(); first += kLanes) {
+      const auto four =
+          samples.subspan(first, std::min<std::size_t>(kLanes, samples.size() - first));
+      const auto at = [&](auto lane) -> const FieldSample& {
+        return four[std::min<std::size_t>(lane, four.size() - 1)];
+      };
+      const Lanes x([&](auto k) { return static_cast<float>(at(k).column - origin.column); });
+      const Lanes y([&](auto k) { return static_cast<float>(at(k).row - origin.row); });
+      const Lanes height_m(
+          [&](auto k) { return static_cast<float>(at(k).height_m - origin.height_m); });
+      const Mask in_doubt = !are_cleared(x, y, height_m);
+      if (stdx::none_of(in_doubt)) continue;
+      for (std::size_t k = 0; k < four.size(); ++k) {
+        if (in_doubt[k] && !triangle_.stays_within(four[k], tolerance_m_)) return false;
+      }
+    }
+    return true;
+  }
+
  private:
-  bool is_cleared(const Lanes& x, const Lanes& height_m) const {
-    Lanes off[4] = {0.0F, 0.0F, 0.0F, 0.0F};
-    Lanes::mask_type is_outside(false);
+  using Mask = Lanes::mask_type;
+
+  /// What four samples are held against over some part of the time.
+  struct Limits {
+    std::array<float, 4> room;     // more off than that may be over the tolerance
+    std::array<float, 3> outside;  // an area less than that is surely outside
+  };
+
+  /// Four samples over some part of the time; all in Bernstein form.
+  struct Passages {
+    std::array<std::array<Lanes, 3>, 3> inside;
+    std::array<Lanes, 4> off;
+
+    Mask are_outside(const Limits& limits) const {
+      Mask outside(false);
+      for (const std::array<Lanes, 3>& area : inside) {
+        outside = outside || (area[0] < limits.outside[0] && area[1] < limits.outside[1] &&
+                              area[2] < limits.outside[2]);
+      }
+      return outside;
+    }
+    Mask have_room(const Limits& limits) const {
+      return stdx::abs(off[0]) <= limits.room[0] && stdx::abs(off[1]) <= limits.room[1] &&
+             stdx::abs(off[2]) <= limits.room[2] && stdx::abs(off[3]) <= limits.room[3];
+    }
+  };
+
+  /// Where corners meet at t = 1, areas and heights off are (1 - t) times something, or (1 - t)^2
+  /// times if all do: so many of the last coefficients are 0, and there is nothing to doubt.
+  std::size_t vanishing() const {
+    return meeting_ == 0 ? 0 : static_cast<std::size_t>(meeting_) - 1;
+  }
+
+  Mask are_cleared(const Lanes& x, const Lanes& y, const Lanes& height_m) const {
+    Passages all{.inside = {}, .off = {0.0F, 0.0F, 0.0F, 0.0F}};
     for (std::size_t k = 0; k < 3; ++k) {
-      const Lanes begin = at_row_[k][0] + x * per_column_[k][0];
-      const Lanes middle = at_row_[k][1] + x * per_column_[k][1];
-      const Lanes end = at_row_[k][2] + x * per_column_[k][2];
-      is_outside = is_outside || (begin < outside_[0] && middle < outside_[1] && end < outside_[2]);
+      std::array<Lanes, 3>& area = all.inside[k];
+      for (std::size_t i = 0; i < 3; ++i) {
+        area[i] = constant_[k][i] + y * per_row_[k][i] + x * per_column_[k][i];
+      }
       const Lanes first = first_m_[k] - height_m, last = last_m_[k] - height_m;
       constexpr float kThird = 1.0F / 3;
-      off[0] += begin * first;
-      off[1] += (begin * last + 2.0F * middle * first) * kThird;
-      off[2] += (2.0F * middle * last + end * first) * kThird;
-      off[3] += end * last;
+      all.off[0] += area[0] * first;
+      all.off[1] += (area[0] * last + 2.0F * area[1] * first) * kThird;
+      all.off[2] += (2.0F * area[1] * last + area[2] * first) * kThird;
+      all.off[3] += area[2] * last;
     }
-    const auto has_room = stdx::abs(off[0]) <= room_[0] && stdx::abs(off[1]) <= room_[1] &&
-                          stdx::abs(off[2]) <= room_[2] && stdx::abs(off[3]) <= room_[3] &&
-                          stdx::abs(height_m) <= highest_m_;
-    return stdx::all_of(is_outside || has_room);
+    for (std::size_t i = 4 - vanishing(); i < 4; ++i) all.off[i] = 0.0F;
+    return stdx::abs(height_m) <= highest_m_ && are_sound(all, limits_, kSplitsAtOnce);
+  }
+
+  static Mask are_sound(const Passages& passages, const Limits& limits, int splits) {
+    const Mask sound = passages.have_room(limits) || passages.are_outside(limits);
+    if (splits == 0 || stdx::all_of(sound)) return sound;
+    Passages second = passages, first;
+    for (std::size_t k = 0; k < 3; ++k) first.inside[k] = split(second.inside[k]);
+    first.off = split(second.off);
+    Limits after = limits, before;
+    before.room = split(after.room);
+    before.outside = split(after.outside);
+    return sound || (are_sound(first, before, splits - 1) && are_sound(second, after, splits - 1));
   }
 
   const MovingTriangle& triangle_;
   double tolerance_m_;
-  float per_column_[3][3], at_row_[3][3], first_m_[3], last_m_[3];
-  float room_[4], outside_[3], highest_m_;
+  int meeting_;
+  float constant_[3][3], per_column_[3][3], per_row_[3][3], first_m_[3], last_m_[3];
+  Limits limits_;
+  float highest_m_;
 };
 
 bool MovingTriangle::stays_within(const SampleField& field, double tolerance_m) const {
@@ -236,12 +310,8 @@ bool MovingTriangle::stays_within(const SampleField& field, double tolerance_m) 
   }
   if (count == 3) return true;
   const std::span<const FieldPoint> hull = std::span(corners).first(count);
-  if (field.is_reduced()) {
-    return for_each_kept_of_hull(hull, field, field.slack_cells, [&](const FieldSample& sample) {
-      return stays_within(sample, tolerance_m);
-    });
-  }
-  RowSweep sweep(*this, tolerance_m);
+  const Sweep sweep(*this, tolerance_m);
+  if (field.is_reduced()) return for_each_kept_run_of_hull(hull, field, field.slack_cells, sweep);
   return for_each_span_of_hull(hull, {field.columns, field.rows}, field.slack_cells,
                                [&](std::int64_t row, std::int64_t first, std::int64_t last) {
                                  return sweep(field, row, first, last);

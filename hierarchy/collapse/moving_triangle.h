@@ -29,7 +29,7 @@ class MovingTriangle {
   bool stays_within(const SampleField& field, double tolerance_m) const;
 
  private:
-  class RowSweep;
+  class Sweep;
 
   /// Twice the area between the sample and an edge, at times that do not matter here: affine.
   struct Affine {
@@ -38,6 +38,9 @@ class MovingTriangle {
       return constant + column * per_column + row * per_row;
     }
   };
+
+  /// Corners that are in one place at t = 1: 0, 2 or 3.
+  int meeting_corners() const;
 
   std::array<FieldPoint, 3> from_, to_;
   /// Bernstein coefficients of the area opposite corner k over a sample, see from_[0]

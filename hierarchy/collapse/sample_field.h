@@ -121,11 +121,12 @@ inline FieldPoint in_blocks(const FieldPoint& p, const SampleField& field) {
   return {(p.column - (side - 1) / 2) / side, (p.row - (side - 1) / 2) / side, 0};
 }
 
-/// Calls visit(number of the sample) for the samples of each block of a reduced field that may lie
-/// between sides; those are counted in blocks. Stops and returns false as soon as visit does.
+/// Calls visit(number of the first sample, number after the last) for the samples of the blocks of
+/// a reduced field that may lie between sides, row by row of blocks; the sides are counted in
+/// blocks. Stops and returns false as soon as visit does.
 template <class Visit>
-bool for_each_kept_between(std::span<const FieldSide> sides, const SampleField& field,
-                           double slack_cells, Visit&& visit) {
+bool for_each_kept_run_between(std::span<const FieldSide> sides, const SampleField& field,
+                               double slack_cells, Visit&& visit) {
   const std::int64_t row_of_blocks = field.blocks().columns;
   // half a block's diagonal takes in whatever lies in a block
   const double reach = 0.75 + slack_cells / static_cast<double>(field.block_cells);
@@ -133,10 +134,7 @@ bool for_each_kept_between(std::span<const FieldSide> sides, const SampleField& 
       sides, field.blocks(), reach, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
         const auto begin = static_cast<std::size_t>(row * row_of_blocks + first);
         const auto end = static_cast<std::size_t>(row * row_of_blocks + last + 1);
-        for (std::size_t k = field.first_kept[begin]; k < field.first_kept[end]; ++k) {
-          if (!visit(k)) return false;
-        }
-        return true;
+        return visit(std::size_t{field.first_kept[begin]}, std::size_t{field.first_kept[end]});
       });
 }
 
@@ -176,11 +174,16 @@ bool for_each_sample(const FieldPoint& a, const FieldPoint& b, const FieldPoint&
   const FieldPoint corners[] = {in_blocks(a, field), in_blocks(b, field), in_blocks(c, field)};
   const FieldSide sides[] = {
       {&corners[0], &corners[1]}, {&corners[1], &corners[2]}, {&corners[2], &corners[0]}};
-  return for_each_kept_between(sides, field, slack_cells, [&](std::size_t k) {
-    const FieldSample& sample = field.kept[k];
-    return is_outside(a, b, sample, ab) || is_outside(b, c, sample, bc) ||
-           is_outside(c, a, sample, ca) || visit(k, sample);
-  });
+  return for_each_kept_run_between(
+      sides, field, slack_cells, [&](std::size_t first, std::size_t end) {
+        for (std::size_t k = first; k < end; ++k) {
+          const FieldSample& sample = field.kept[k];
+          const bool is_beside = is_outside(a, b, sample, ab) || is_outside(b, c, sample, bc) ||
+                                 is_outside(c, a, sample, ca);
+          if (!is_beside && !visit(k, sample)) return false;
+        }
+        return true;
+      });
 }
 
 /// The sides of the convex hull of 3 to 6 points, and the lines between all others of them.
@@ -225,18 +228,20 @@ bool for_each_span_of_hull(std::span<const FieldPoint> points, const GridShape& 
   return true;
 }
 
-/// Calls visit(sample) for each sample of a reduced field that may lie in the convex hull of 3 to 6
-/// points. Stops and returns false as soon as visit does.
+/// Calls visit(samples) for runs of those samples of a reduced field that may lie in the convex
+/// hull of 3 to 6 points. Stops and returns false as soon as visit does.
 template <class Visit>
-bool for_each_kept_of_hull(std::span<const FieldPoint> points, const SampleField& field,
-                           double slack_cells, Visit&& visit) {
+bool for_each_kept_run_of_hull(std::span<const FieldPoint> points, const SampleField& field,
+                               double slack_cells, Visit&& visit) {
   std::array<FieldPoint, 6> counted_in_blocks;
   for (std::size_t k = 0; k < points.size(); ++k) {
     counted_in_blocks[k] = in_blocks(points[k], field);
   }
   const HullSides hull(std::span<const FieldPoint>(counted_in_blocks).first(points.size()));
-  return for_each_kept_between(hull.sides(), field, slack_cells,
-                               [&](std::size_t k) { return visit(field.kept[k]); });
+  return for_each_kept_run_between(
+      hull.sides(), field, slack_cells, [&](std::size_t first, std::size_t end) {
+        return visit(std::span(field.kept).subspan(first, end - first));
+      });
 }
 
 }  // namespace terrane::hierarchy
