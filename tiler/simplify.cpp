@@ -8,6 +8,7 @@
 
 #include "core/errors.h"
 #include "hierarchy/collapse/strict_collapse.h"
+#include "hierarchy/mesh/boundary_vertices.h"
 #include "hierarchy/mesh/grid_triangles.h"
 
 namespace terrane::tiler {
@@ -72,18 +73,17 @@ TerrainMesh full_terrain(const HeightGrid& grid, const std::vector<FeatureLine>&
   for (const hierarchy::LineEdge& edge : terrain.lines) {
     for (const std::uint32_t v : edge) terrain.vertices[v].kind = VertexKind::kFeature;
   }
-  const hierarchy::HalfedgeMesh mesh(static_cast<std::uint32_t>(terrain.vertices.size()),
-                                     terrain.triangles);
-  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
-    if (!mesh.is_boundary(hierarchy::VertexId{v})) continue;
-    const std::uint32_t number = mesh.origin(hierarchy::VertexId{v});
-    hierarchy::TerrainVertex& vertex = terrain.vertices[number];
+  const std::vector<bool> is_boundary =
+      hierarchy::boundary_vertices(terrain.vertices.size(), terrain.triangles);
+  for (std::uint32_t v = 0; v < terrain.vertices.size(); ++v) {
+    if (!is_boundary[v]) continue;
+    hierarchy::TerrainVertex& vertex = terrain.vertices[v];
     // where a line comes to the edge of the data, it stays
     const bool is_on_line = vertex.kind == VertexKind::kFeature;
     if (vertex.kind != VertexKind::kLocked) {
       vertex.kind = is_on_line ? VertexKind::kLocked : VertexKind::kOutline;
     }
-    if (number < full.samples.size()) vertex.border = full.samples[number];
+    if (v < full.samples.size()) vertex.border = full.samples[v];
   }
   return terrain;
 }

@@ -11,27 +11,48 @@
 namespace terrane::hierarchy {
 namespace {
 
+/// A half-edge, listed with the vertex that it starts at.
+struct Arrow {
+  std::uint32_t end;
+  HalfedgeId halfedge;
+};
+
 /// The half-edges that start at each vertex.
 class Outgoing {
  public:
-  Outgoing(std::uint32_t vertex_count, const IdVector<HalfedgeId, VertexId>& start)
-      : begin_(vertex_count + 1, 0), halfedges_(start.size()) {
-    for (const VertexId v : start) ++begin_[index(v) + 1];
+  Outgoing(std::uint32_t vertex_count, std::span<const Corners> triangles)
+      : begin_(vertex_count + 1, 0), arrows_(3 * triangles.size()) {
+    for (const Corners& corners : triangles) {
+      for (const std::uint32_t v : corners) ++begin_[v + 1];
+    }
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     std::vector<std::uint32_t> free(begin_.begin(), begin_.end() - 1);
-    for (std::uint32_t i = 0; i < start.size(); ++i) {
-      halfedges_[free[index(start[HalfedgeId{i}])]++] = HalfedgeId{i};
+    std::uint32_t halfedge = 0;
+    for (const Corners& corners : triangles) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        arrows_[free[corners[k]]++] = {corners[(k + 1) % 3], HalfedgeId{halfedge++}};
+      }
     }
   }
 
-  std::span<const HalfedgeId> of(VertexId v) const {
-    return std::span(halfedges_).subspan(begin_[index(v)], begin_[index(v) + 1] - begin_[index(v)]);
+  std::span<const Arrow> of(std::uint32_t v) const {
+    return std::span(arrows_).subspan(begin_[v], begin_[v + 1] - begin_[v]);
   }
 
  private:
   std::vector<std::uint32_t> begin_;
-  std::vector<HalfedgeId> halfedges_;
+  std::vector<Arrow> arrows_;
 };
+
+void check_ends_differ(std::uint32_t start, std::span<const Arrow> arrows) {
+  for (std::size_t i = 0; i < arrows.size(); ++i) {
+    const std::uint32_t end = arrows[i].end;
+    if (std::ranges::find(arrows.subspan(i + 1), end, &Arrow::end) == arrows.end()) continue;
+    throw TopologyError(fmt::format(
+        "edge {}-{}: has more than two triangles, or two that do not agree in orientation",
+        std::min(start, end), std::max(start, end)));
+  }
+}
 
 void check_corners(std::span<const Corners> triangles, std::uint32_t vertex_count) {
   for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -64,26 +85,25 @@ HalfedgeMesh::HalfedgeMesh(std::uint32_t vertex_count, std::span<const Corners> 
     }
   }
   for (std::uint32_t v = 0; v < vertex_count; ++v) origin_[VertexId{v}] = v;
-  pair_edges();
+  pair_edges(triangles);
   split_fans();
   close_boundaries();
   count_valences();
 }
 
-void HalfedgeMesh::pair_edges() {
-  const Outgoing outgoing(vertex_count_, start_);
-  const auto count = [&](VertexId from, VertexId to) {
-    return std::ranges::count_if(outgoing.of(from), [&](HalfedgeId h) { return end(h) == to; });
-  };
-  for (std::uint32_t i = 0; i < start_.size(); ++i) {
-    const HalfedgeId h{i};
-    const auto there = outgoing.of(end(h));
-    const auto back = std::ranges::find(there, start(h), [&](HalfedgeId b) { return end(b); });
-    if (back != there.end()) opposite_[h] = *back;
-    if (count(start(h), end(h)) == 1) continue;
-    throw TopologyError(fmt::format(
-        "edge {}-{}: has more than two triangles, or two that do not agree in orientation",
-        std::min(index(start(h)), index(end(h))), std::max(index(start(h)), index(end(h)))));
+void HalfedgeMesh::pair_edges(std::span<const Corners> triangles) {
+  const Outgoing outgoing(vertex_count_, triangles);
+  for (std::uint32_t v = 0; v < vertex_count_; ++v) {
+    const std::span<const Arrow> arrows = outgoing.of(v);
+    check_ends_differ(v, arrows);
+    for (const auto& [end, halfedge] : arrows) {
+      if (end < v) continue;  // from the end with the smaller number
+      const auto there = outgoing.of(end);
+      const auto back = std::ranges::find(there, v, &Arrow::end);
+      if (back == there.end()) continue;
+      opposite_[halfedge] = back->halfedge;
+      opposite_[back->halfedge] = halfedge;
+    }
   }
 }
 

@@ -103,7 +103,7 @@ class HalfedgeMesh {
   static HalfedgeId offset(HalfedgeId h, int by) {
     return HalfedgeId{static_cast<std::uint32_t>(h) + static_cast<std::uint32_t>(by)};
   }
-  void pair_edges();
+  void pair_edges(std::span<const Corners> triangles);
   void split_fans();
   void claim_fan(HalfedgeId first, std::vector<bool>& claimed);
   void close_boundaries();
