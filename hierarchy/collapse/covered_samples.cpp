@@ -1,12 +1,22 @@
 #include "hierarchy/collapse/covered_samples.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "hierarchy/collapse/triangle_plane.h"
 
 namespace terrane::hierarchy {
 namespace {
 
-// numbers_ may hold so many times the samples before the gaps in it are closed
-constexpr std::size_t kMostGaps = 3;
+// samples_ may grow to so many times the samples before the gaps in it are closed
+constexpr std::size_t kMostGaps = 2;
+
+// of so many samples one after the other under a triangle, the highest over it and the lowest are
+// keen: half as many as there are for a triangle
+constexpr std::size_t kKeenShare = 2;
+
+// with fewer than so many it would not pay
+constexpr std::size_t kFewestForKeen = 6;
 
 FieldPoint plan_of(const TerrainVertex& vertex) {
   return {column_of(vertex.place.plan), row_of(vertex.place.plan), 0};
@@ -19,20 +29,21 @@ CoveredSamples::CoveredSamples(const SampleField& field, std::span<const Terrain
     : lists_(triangle_capacity) {
   const std::size_t all = std::max(field.heights_m.size(), field.kept.size());
   std::vector<bool> is_claimed(all, false);
+  std::vector<CoveredSample> found;
   std::vector<std::uint32_t> owner;
-  samples_.reserve(all);
+  found.reserve(all);
   owner.reserve(all);
   // twice: what lies beside the outline goes to a triangle only when none has it for its own
   constexpr double kOnEdge_cells = 1e-7;
   for (const double slack_cells : {kOnEdge_cells, field.slack_cells}) {
-    if (samples_.size() == all) break;
+    if (found.size() == all) break;
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
       const auto [a, b, c] = triangles[t];
       for_each_sample(plan_of(vertices[a]), plan_of(vertices[b]), plan_of(vertices[c]), field,
                       slack_cells, [&](std::size_t number, const FieldSample& sample) {
                         if (is_claimed[number]) return true;
                         is_claimed[number] = true;
-                        samples_.push_back({sample.column, sample.row, sample.height_m});
+                        found.push_back({sample.column, sample.row, sample.height_m});
                         owner.push_back(t);
                         return true;
                       });
@@ -44,40 +55,71 @@ CoveredSamples::CoveredSamples(const SampleField& field, std::span<const Terrain
     list.first = first;
     first += std::exchange(list.count, 0);
   }
-  numbers_.resize(samples_.size());
-  for (std::uint32_t s = 0; s < owner.size(); ++s) {
+  count_ = found.size();
+  samples_.reserve(kMostGaps * count_);
+  samples_.resize(count_);
+  for (std::size_t s = 0; s < count_; ++s) {
     List& list = lists_[TriangleId{owner[s]}];
-    numbers_[list.first + list.count++] = s;
+    samples_[list.first + list.count++] = found[s];
+  }
+  choose_keen(vertices, triangles);
+}
+
+void CoveredSamples::choose_keen(std::span<const TerrainVertex> vertices,
+                                 std::span<const Corners> triangles) {
+  const std::size_t chunk = count_ / std::max<std::size_t>(1, triangles.size()) / kKeenShare;
+  if (chunk < kFewestForKeen) return;
+  has_keen_ = true;
+  std::vector<std::size_t> keen;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    List& list = lists_[TriangleId{t}];
+    const auto [a, b, c] = triangles[t];
+    const TrianglePlane plane(vertices[a].place, vertices[b].place, vertices[c].place);
+    const std::span<CoveredSample> under = std::span(samples_).subspan(list.first, list.count);
+    keen.clear();
+    for (std::size_t first = 0; first < under.size(); first += chunk) {
+      const auto part = under.subspan(first, std::min(chunk, under.size() - first));
+      const auto [low, high] = std::ranges::minmax_element(
+          part, {}, [&](const CoveredSample& sample) { return plane.error_m(sample); });
+      const auto number = [&](const auto& it) {
+        return first + static_cast<std::size_t>(it - part.begin());
+      };
+      keen.push_back(std::min(number(low), number(high)));
+      if (low != high) keen.push_back(std::max(number(low), number(high)));
+    }
+    for (const std::size_t k : keen) std::swap(under[list.keen++], under[k]);
   }
 }
 
 void CoveredSamples::share_out(std::span<const TriangleId> triangles,
-                               std::span<const std::uint32_t> samples,
+                               std::span<const CoveredSample> samples, std::size_t keen_count,
                                std::span<const std::uint32_t> sector) {
   for (const TriangleId t : triangles) clear(t);
-  if (numbers_.size() + samples.size() > kMostGaps * samples_.size()) compact();
+  if (samples_.size() + samples.size() > kMostGaps * count_) compact();
   for (std::size_t k = 0; k < samples.size(); ++k) ++lists_[triangles[sector[k]]].count;
-  std::size_t first = numbers_.size();
-  numbers_.resize(first + samples.size());
+  for (std::size_t k = 0; k < keen_count; ++k) ++lists_[triangles[sector[k]]].keen;
+  std::size_t first = samples_.size();
+  samples_.resize(first + samples.size());
   for (const TriangleId t : triangles) {
     lists_[t].first = first;
     first += std::exchange(lists_[t].count, 0);
   }
+  // keen ones come first among all, so they do in each list
   for (std::size_t k = 0; k < samples.size(); ++k) {
     List& list = lists_[triangles[sector[k]]];
-    numbers_[list.first + list.count++] = samples[k];
+    samples_[list.first + list.count++] = samples[k];
   }
 }
 
 void CoveredSamples::compact() {
-  std::vector<std::uint32_t> kept;
-  kept.reserve(kMostGaps * samples_.size());
+  std::vector<CoveredSample> kept;
+  kept.reserve(kMostGaps * count_);
   for (List& list : lists_) {
-    const auto begin = numbers_.begin() + static_cast<std::ptrdiff_t>(list.first);
+    const auto begin = samples_.begin() + static_cast<std::ptrdiff_t>(list.first);
     list.first = kept.size();
     kept.insert(kept.end(), begin, begin + list.count);
   }
-  numbers_ = std::move(kept);
+  samples_ = std::move(kept);
 }
 
 }  // namespace terrane::hierarchy

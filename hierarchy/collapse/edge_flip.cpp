@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hierarchy/collapse/triangle_plane.h"
+
 namespace terrane::hierarchy {
 namespace {
 
@@ -21,27 +23,6 @@ bool is_upright(GridPoint a, GridPoint b, GridPoint c, double smallest_altitude_
       std::max({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
   return area > 0 && area * area >= longest2 * altitude * altitude;
 }
-
-/// The plane of a triangle over the grid.
-class Plane {
- public:
-  Plane(const Place& a, const Place& b, const Place& c)
-      : column_(column_of(a.plan)), row_(row_of(a.plan)), height_m_(a.height_m) {
-    const double bx = column_of(b.plan) - column_, by = row_of(b.plan) - row_;
-    const double cx = column_of(c.plan) - column_, cy = row_of(c.plan) - row_;
-    const double bz = b.height_m - height_m_, cz = c.height_m - height_m_;
-    const double scale = 1 / (bx * cy - by * cx);
-    per_column_ = (bz * cy - by * cz) * scale;
-    per_row_ = (bx * cz - bz * cx) * scale;
-  }
-  double error_m(const CoveredSample& sample) const {
-    return height_m_ + (sample.column - column_) * per_column_ + (sample.row - row_) * per_row_ -
-           sample.height_m;
-  }
-
- private:
-  double column_, row_, height_m_, per_column_, per_row_;
-};
 
 }  // namespace
 
@@ -65,26 +46,33 @@ bool EdgeFlip::is_better(HalfedgeId h, const HalfedgeMesh& mesh,
     return false;
   }
 
-  const Plane before[] = {{a, b, c}, {b, a, d}}, after[] = {{a, d, c}, {b, c, d}};
+  const TrianglePlane before[] = {{a, b, c}, {b, a, d}}, after[] = {{a, d, c}, {b, c, d}};
   const double dx = static_cast<double>(c.plan.x) - d.plan.x;
   const double dy = static_cast<double>(c.plan.y) - d.plan.y;
   double old_square = 0, new_square = 0;
   samples_.clear();
   sector_.clear();
-  for (std::size_t t = 0; t < 2; ++t) {
-    for (const std::uint32_t s : samples.under(t == 0 ? t0 : t1)) {
-      const CoveredSample& sample = samples[s];
+  const auto judge = [&](std::span<const CoveredSample> under, const TrianglePlane& now) {
+    for (const CoveredSample& sample : under) {
       const double x = double{sample.column} * kUnitsPerCell - d.plan.x;
       const double y = -double{sample.row} * kUnitsPerCell - d.plan.y;
       const std::uint32_t sector = dx * y - dy * x >= 0 ? 0 : 1;
       const double error_m = after[sector].error_m(sample);
       if (!(std::abs(error_m) <= tolerance_m)) return false;
-      const double old_m = before[t].error_m(sample);
+      const double old_m = now.error_m(sample);
       old_square += old_m * old_m;
       new_square += error_m * error_m;
-      samples_.push_back(s);
+      samples_.push_back(sample);
       sector_.push_back(sector);
     }
+    return true;
+  };
+  if (!judge(samples.keen_under(t0), before[0]) || !judge(samples.keen_under(t1), before[1])) {
+    return false;
+  }
+  keen_count_ = samples_.size();
+  if (!judge(samples.others_under(t0), before[0]) || !judge(samples.others_under(t1), before[1])) {
+    return false;
   }
   return new_square < (1 - kLeastGain) * old_square;
 }

@@ -28,12 +28,16 @@ class EdgeFlip {
                  const CoveredSamples& samples, double tolerance_m, double smallest_altitude_cells);
 
   /// The samples under the pair that was last better.
-  std::span<const std::uint32_t> samples() const { return samples_; }
+  std::span<const CoveredSample> samples() const { return samples_; }
+  /// So many of them, the first ones, are keen.
+  std::size_t keen_count() const { return keen_count_; }
   /// For each of them: 0 if it comes to lie in triangle(h), 1 across.
   std::span<const std::uint32_t> sector() const { return sector_; }
 
  private:
-  std::vector<std::uint32_t> samples_, sector_;
+  std::vector<CoveredSample> samples_;
+  std::size_t keen_count_ = 0;
+  std::vector<std::uint32_t> sector_;
 };
 
 }  // namespace terrane::hierarchy

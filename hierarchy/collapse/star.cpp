@@ -4,11 +4,35 @@
 
 namespace terrane::hierarchy {
 
-void Star::gather(const Stencil& stencil, const HalfedgeMesh& mesh,
-                  std::span<const TerrainVertex> vertices, const CoveredSamples& samples) {
+void Star::gather_few(const Stencil& stencil, const HalfedgeMesh& mesh,
+                      std::span<const TerrainVertex> vertices, const CoveredSamples& samples) {
   origin_ = vertices[index(stencil.core[0])].place;
   gather_polygon(stencil, mesh, vertices);
-  gather_samples(stencil, mesh, samples);
+  dying_count_ = 0;
+  for (const HalfedgeId h : stencil.dying_span()) {
+    dying_[dying_count_++] = HalfedgeMesh::triangle(h);
+  }
+  if (stencil.core_size == 3) {
+    dying_[dying_count_++] = HalfedgeMesh::triangle(mesh.opposite(stencil.dying[0]));
+  }
+  sample_count_ = 0;
+  if (samples.has_keen()) {
+    for (const TriangleId t : dying()) add(samples.keen_under(t));
+    for (const TriangleId t : triangles()) add(samples.keen_under(t));
+    keen_count_ = sample_count_;
+  } else {
+    for (const TriangleId t : dying()) add(samples.others_under(t));
+    keen_count_ = 0;
+  }
+  pad_samples();
+}
+
+void Star::gather_rest(const CoveredSamples& samples) {
+  if (samples.has_keen()) {
+    for (const TriangleId t : dying()) add(samples.others_under(t));
+  }
+  for (const TriangleId t : triangles()) add(samples.others_under(t));
+  pad_samples();
 }
 
 void Star::gather_polygon(const Stencil& stencil, const HalfedgeMesh& mesh,
@@ -56,17 +80,7 @@ Star::Centre Star::centre(GridPoint plan) const {
           static_cast<float>(plan.y - origin_.plan.y) * kCellsPerUnit};
 }
 
-void Star::gather_samples(const Stencil& stencil, const HalfedgeMesh& mesh,
-                          const CoveredSamples& samples) {
-  sample_count_ = 0;
-  // the triangles that die first: their samples are near the new centre and refuse most
-  for (const HalfedgeId h : stencil.dying_span()) {
-    gather_samples(HalfedgeMesh::triangle(h), samples);
-  }
-  if (stencil.core_size == 3) {
-    gather_samples(HalfedgeMesh::triangle(mesh.opposite(stencil.dying[0])), samples);
-  }
-  for (std::size_t k = 0; k < sector_count_; ++k) gather_samples(triangles_[k], samples);
+void Star::pad_samples() {
   if (sample_count_ == 0) return;
   for (std::size_t k = sample_count_; k % kLanes != 0; ++k) {
     sample_x_[k] = sample_x_[sample_count_ - 1];
@@ -75,20 +89,23 @@ void Star::gather_samples(const Stencil& stencil, const HalfedgeMesh& mesh,
   }
 }
 
-void Star::gather_samples(TriangleId triangle, const CoveredSamples& samples) {
+void Star::add(std::span<const CoveredSample> samples) {
   const double column = column_of(origin_.plan), row = row_of(origin_.plan);
-  const std::span<const std::uint32_t> under = samples.under(triangle);
-  while (sample_count_ + under.size() + kLanes > samples_.size()) make_room_for_samples();
-  std::size_t k = sample_count_;
-  for (const std::uint32_t s : under) {
-    const CoveredSample& sample = samples[s];
-    samples_[k] = s;
-    sample_x_[k] = static_cast<float>(sample.column - column);
-    sample_y_[k] = static_cast<float>(row - sample.row);
-    sample_z_[k] = static_cast<float>(sample.height_m - origin_.height_m);
-    ++k;
+  while (sample_count_ + samples.size() + kLanes > samples_.size()) make_room_for_samples();
+  // locals: as members, every store would reload them
+  const double height_m = origin_.height_m;
+  CoveredSample* copy = samples_.data() + sample_count_;
+  float* x = sample_x_.data() + sample_count_;
+  float* y = sample_y_.data() + sample_count_;
+  float* z = sample_z_.data() + sample_count_;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const CoveredSample sample = samples[k];
+    copy[k] = sample;
+    x[k] = static_cast<float>(sample.column - column);
+    y[k] = static_cast<float>(row - sample.row);
+    z[k] = static_cast<float>(sample.height_m - height_m);
   }
-  sample_count_ = k;
+  sample_count_ += samples.size();
 }
 
 void Star::make_room_for_samples() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,9 +24,21 @@ namespace terrane::hierarchy {
 /// so that floats hold them well.
 class Star {
  public:
-  /// Takes over the surroundings of a core. Keeps its memory from call to call.
+  /// Takes over the surroundings of a core, with the samples under all its triangles. Keeps its
+  /// memory from call to call.
   void gather(const Stencil& stencil, const HalfedgeMesh& mesh,
-              std::span<const TerrainVertex> vertices, const CoveredSamples& samples);
+              std::span<const TerrainVertex> vertices, const CoveredSamples& samples) {
+    gather_few(stencil, mesh, vertices, samples);
+    gather_rest(samples);
+  }
+
+  /// The same with those samples only that refuse most: the keen ones, or where there are none,
+  /// those under the triangles that a collapse takes away, as they are near the new centre.
+  void gather_few(const Stencil& stencil, const HalfedgeMesh& mesh,
+                  std::span<const TerrainVertex> vertices, const CoveredSamples& samples);
+  /// Adds the other samples.
+  /// \pre gather_few() was the last call, with the same samples.
+  void gather_rest(const CoveredSamples& samples);
 
   /// A place counted from origin().
   struct Centre {
@@ -55,19 +68,22 @@ class Star {
   const float* sample_x() const { return sample_x_.data(); }
   const float* sample_y() const { return sample_y_.data(); }
   const float* sample_z() const { return sample_z_.data(); }
-  std::uint32_t sample(std::size_t k) const { return samples_[k]; }
-  std::span<const std::uint32_t> samples() const {
+  const CoveredSample& sample(std::size_t k) const { return samples_[k]; }
+  std::span<const CoveredSample> samples() const {
     return std::span(samples_).first(sample_count_);
   }
+
+  /// So many of them, the first ones, are keen.
+  std::size_t keen_count() const { return keen_count_; }
 
   static constexpr std::size_t kLanes = 4;
 
  private:
   void gather_polygon(const Stencil& stencil, const HalfedgeMesh& mesh,
                       std::span<const TerrainVertex> vertices);
-  void gather_samples(const Stencil& stencil, const HalfedgeMesh& mesh,
-                      const CoveredSamples& samples);
-  void gather_samples(TriangleId triangle, const CoveredSamples& samples);
+  std::span<const TriangleId> dying() const { return std::span(dying_).first(dying_count_); }
+  void add(std::span<const CoveredSample> samples);
+  void pad_samples();
   void make_room_for_corners(std::size_t count);
   void make_room_for_samples();
 
@@ -77,9 +93,11 @@ class Star {
   std::vector<float> corner_x_, corner_y_, corner_z_;
   std::vector<const Place*> corners_;
   std::vector<TriangleId> triangles_;
-  std::size_t sample_count_ = 0;
+  std::array<TriangleId, 4> dying_;
+  std::size_t dying_count_ = 0;
+  std::size_t sample_count_ = 0, keen_count_ = 0;
   std::vector<float> sample_x_, sample_y_, sample_z_;
-  std::vector<std::uint32_t> samples_;
+  std::vector<CoveredSample> samples_;
 };
 
 }  // namespace terrane::hierarchy

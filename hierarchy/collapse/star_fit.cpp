@@ -1,5 +1,6 @@
 #include "hierarchy/collapse/star_fit.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <experimental/simd>
@@ -106,6 +107,53 @@ Located locate(const Star& star, const Spokes& spokes, const Lanes& x, const Lan
   return at;
 }
 
+/// What four samples say about the height of the centre.
+struct Said {
+  Lanes weight;      // of the centre's height
+  Lanes difference;  // to the sample, of what the polygon alone makes of it
+};
+
+Said ask(const Star& star, const Spokes& spokes, Star::Centre centre, std::size_t first) {
+  const Lanes x = load(star.sample_x() + first) - centre.x;
+  const Lanes y = load(star.sample_y() + first) - centre.y;
+  const Located at = locate(star, spokes, x, y);
+  const Lanes scale([&](auto lane) { return spokes.scale[at.sector[lane]]; });
+  const Lanes z([&](auto lane) { return star.corner_z()[at.sector[lane]]; });
+  const Lanes next_z([&](auto lane) { return star.corner_z()[at.sector[lane] + 1]; });
+
+  const Lanes of_corner = -at.after * scale, of_next = at.before * scale;
+  Said said{1.0F - of_corner - of_next,
+            load(star.sample_z() + first) - of_corner * z - of_next * next_z};
+  const std::size_t count = star.sample_count();
+  if (first + Star::kLanes > count) {
+    const Lanes lane([](auto k) { return static_cast<float>(k); });
+    const auto is_padding = lane >= static_cast<float>(count - first);
+    stdx::where(is_padding, said.weight) = 0.0F;
+    stdx::where(is_padding, said.difference) = 0.0F;
+  }
+  return said;
+}
+
+/// The heights of the centre that some samples allow.
+struct Interval {
+  Lanes lowest = -kInfinity, highest = kInfinity;
+
+  void narrow(const Said& said, float tolerance_m) {
+    const auto decides = said.weight > kSmallestWeight;
+    const Lanes per_weight = 1.0F / said.weight;
+    stdx::where(decides, lowest) = stdx::max(lowest, (said.difference - tolerance_m) * per_weight);
+    stdx::where(decides, highest) =
+        stdx::min(highest, (said.difference + tolerance_m) * per_weight);
+  }
+  float greatest_lowest() const {
+    return std::max(std::max(lowest[0], lowest[1]), std::max(lowest[2], lowest[3]));
+  }
+  float least_highest() const {
+    return std::min(std::min(highest[0], highest[1]), std::min(highest[2], highest[3]));
+  }
+  bool is_empty() const { return greatest_lowest() > least_highest(); }
+};
+
 }  // namespace
 
 StarVerdict StarJudge::fit(const Star& star, Star::Centre centre, float tolerance_m,
@@ -113,42 +161,47 @@ StarVerdict StarJudge::fit(const Star& star, Star::Centre centre, float toleranc
   Spokes spokes(star, spokes_);
   if (!spokes.set(star, centre, smallest_altitude_cells)) return StarVerdict::kNotStarShaped;
 
-  Lanes lowest(-kInfinity), highest(kInfinity), ww(0.0F), wd(0.0F), dd(0.0F);
-  const std::size_t count = star.sample_count();
-  for (std::size_t first = 0; first < count; first += Star::kLanes) {
-    const Lanes x = load(star.sample_x() + first) - centre.x;
-    const Lanes y = load(star.sample_y() + first) - centre.y;
-    const Located at = locate(star, spokes, x, y);
-    const Lanes scale([&](auto lane) { return spokes.scale[at.sector[lane]]; });
-    const Lanes z([&](auto lane) { return star.corner_z()[at.sector[lane]]; });
-    const Lanes next_z([&](auto lane) { return star.corner_z()[at.sector[lane] + 1]; });
-
-    const Lanes of_corner = -at.after * scale, of_next = at.before * scale;
-    Lanes weight = 1.0F - of_corner - of_next;
-    Lanes difference = load(star.sample_z() + first) - of_corner * z - of_next * next_z;
-    if (first + Star::kLanes > count) {
-      const Lanes lane([](auto k) { return static_cast<float>(k); });
-      const auto is_padding = lane >= static_cast<float>(count - first);
-      stdx::where(is_padding, weight) = 0.0F;
-      stdx::where(is_padding, difference) = 0.0F;
-    }
-    const auto decides = weight > kSmallestWeight;
-    const Lanes per_weight = 1.0F / weight;
-    stdx::where(decides, lowest) = stdx::max(lowest, (difference - tolerance_m) * per_weight);
-    stdx::where(decides, highest) = stdx::min(highest, (difference + tolerance_m) * per_weight);
-    if (stdx::any_of(lowest > highest)) return StarVerdict::kOverTolerance;
-    ww += weight * weight;
-    wd += weight * difference;
-    dd += difference * difference;
+  Interval interval;
+  for (std::size_t i = 0; i < contrary_.count; ++i) {
+    interval.narrow(ask(star, spokes, centre, contrary_.first[i]), tolerance_m);
   }
-  heights.lowest = stdx::hmax(lowest);
-  heights.highest = stdx::hmin(highest);
-  if (heights.lowest > heights.highest) return StarVerdict::kOverTolerance;
+  if (interval.is_empty()) return StarVerdict::kOverTolerance;
+
+  Lanes ww(0.0F), wd(0.0F), dd(0.0F);
+  const std::size_t count = star.sample_count();
+  if (bounds_.size() < 2 * (count + Star::kLanes)) bounds_.resize(4 * (count + Star::kLanes));
+  for (std::size_t first = 0; first < count; first += Star::kLanes) {
+    const Said said = ask(star, spokes, centre, first);
+    interval.narrow(said, tolerance_m);
+    interval.lowest.copy_to(&bounds_[2 * first], stdx::element_aligned);
+    interval.highest.copy_to(&bounds_[2 * first + Star::kLanes], stdx::element_aligned);
+    if (interval.is_empty()) {
+      remember_contrary(first, interval.greatest_lowest(), interval.least_highest());
+      return StarVerdict::kOverTolerance;
+    }
+    ww += said.weight * said.weight;
+    wd += said.weight * said.difference;
+    dd += said.difference * said.difference;
+  }
+  heights.lowest = interval.greatest_lowest();
+  heights.highest = interval.least_highest();
   const float weights = sum(ww), wished = weights > 0 ? sum(wd) / weights : 0;
   heights.best = std::clamp(wished, heights.lowest, heights.highest);
   heights.squared_error =
       sum(dd) - 2 * heights.best * sum(wd) + heights.best * heights.best * weights;
   return StarVerdict::kFeasible;
+}
+
+/// Finds the first fours, up to \p last, after which the interval had these bounds.
+void StarJudge::remember_contrary(std::size_t last, float lowest, float highest) {
+  const auto first_with = [&](float bound, std::size_t offset) {
+    for (std::size_t first = 0; first < last; first += Star::kLanes) {
+      const float* four = &bounds_[2 * first + offset];
+      if (std::find(four, four + Star::kLanes, bound) != four + Star::kLanes) return first;
+    }
+    return last;
+  };
+  contrary_ = {2, {first_with(lowest, 0), first_with(highest, Star::kLanes)}};
 }
 
 namespace {
@@ -198,8 +251,7 @@ class ExactStar {
 
 }  // namespace
 
-bool StarJudge::holds(const Star& star, const Place& centre, const CoveredSamples& samples,
-                      double tolerance_m) {
+bool StarJudge::holds(const Star& star, const Place& centre, double tolerance_m) {
   Spokes spokes(star, spokes_);
   const Star::Centre at = star.centre(centre.plan);
   if (!spokes.set(star, at, 0)) return false;
@@ -211,7 +263,7 @@ bool StarJudge::holds(const Star& star, const Place& centre, const CoveredSample
                                    load(star.sample_y() + first) - at.y);
     const std::size_t end = std::min(first + Star::kLanes, star.sample_count());
     for (std::size_t k = first; k < end; ++k) {
-      const CoveredSample& sample = samples[star.sample(k)];
+      const CoveredSample& sample = star.sample(k);
       auto sector = located.sector[k - first];
       const double z = exact.height_m(double{sample.column} * kUnitsPerCell - centre.plan.x,
                                       -double{sample.row} * kUnitsPerCell - centre.plan.y, sector);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -37,8 +38,10 @@ class StarJudge {
   /// Is the star around a written place within the tolerance of every sample under it? In double
   /// precision.
   /// \pre the polygon sees the place.
-  bool holds(const Star& star, const Place& centre, const CoveredSamples& samples,
-             double tolerance_m);
+  bool holds(const Star& star, const Place& centre, double tolerance_m);
+
+  /// Tells that another star comes.
+  void begin() { contrary_.count = 0; }
 
   /// For each sample of the star the sector that it is in, around the place that last held.
   std::span<const std::uint32_t> sectors(const Star& star) const {
@@ -46,7 +49,18 @@ class StarJudge {
   }
 
  private:
+  /// The fours of samples that left no height to the last centre which had none. They are asked
+  /// first about the next centre, as most have the same two to refuse them.
+  struct Contrary {
+    std::size_t count = 0;
+    std::array<std::size_t, 2> first{};  // samples that the fours begin with
+  };
+
+  void remember_contrary(std::size_t last, float lowest, float highest);
+
   std::vector<float> spokes_;  // see Spokes in the source
+  std::vector<float> bounds_;  // of the heights, sample by sample: lowest, highest by fours
+  Contrary contrary_;
   std::vector<std::uint32_t> sectors_;
 };
 

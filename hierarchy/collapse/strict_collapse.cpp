@@ -130,7 +130,7 @@ class StrictCollapse {
       }
       mesh_.flip(h);
       const TriangleId pair[] = {t, across};
-      samples_.share_out(pair, flip_.samples(), flip_.sector());
+      samples_.share_out(pair, flip_.samples(), flip_.keen_count(), flip_.sector());
       ++result_.flips;
     }
   }
@@ -140,7 +140,7 @@ class StrictCollapse {
     if (mesh_.outgoing(v) == kNoHalfedge || vertices_[index(v)].kind != VertexKind::kInterior)
       return;
     walker_.around_vertex(v, stencil_);
-    star_.gather(stencil_, mesh_, vertices_, samples_);
+    gather_few();
     const Place here = vertices_[index(v)].place;
     water_m_ = vertices_[index(v)].water_m;
     candidates_.clear();
@@ -151,7 +151,8 @@ class StrictCollapse {
     }
     const std::optional<Place> place = best_candidate();
     if (!place || place->lattice == here.lattice) return;
-    samples_.share_out(star_.triangles(), star_.samples(), judge_.sectors(star_));
+    samples_.share_out(star_.triangles(), star_.samples(), star_.keen_count(),
+                       judge_.sectors(star_));
     vertices_[index(v)].place = *place;
     ++result_.moves;
   }
@@ -285,32 +286,58 @@ class StrictCollapse {
 
   /// Where the core may go; refusal_ says why if nowhere.
   std::optional<Place> best_place(const BoundaryVerdict& boundary) {
-    star_.gather(stencil_, mesh_, vertices_, samples_);
+    gather_few();
     refusal_ = Collapsibility::kNotStarShaped;
-    if (boundary.onto) return onto_line(vertices_[index(*boundary.onto)].place);
+    if (boundary.onto) {
+      star_.gather_rest(samples_);
+      return onto_line(vertices_[index(*boundary.onto)].place);
+    }
 
     water_m_ = vertices_[index(stencil_.core[0])].water_m;
     list_candidates();
     return best_candidate();
   }
 
-  /// The place of the candidate with the least squared error among those that may be written.
+  /// The place of the candidate with the least squared error among those that may be written; where
+  /// there are keen samples, with the least at those.
   std::optional<Place> best_candidate() {
-    for (Candidate& candidate : candidates_) {
-      candidate.is_rejected = !fit(candidate.plan, candidate.heights);
+    if (star_.sample_count() > 0) {
+      if (!fit_candidates()) return std::nullopt;
+      judge_.begin();
     }
+    star_.gather_rest(samples_);
+    const bool is_judged_by_keen = star_.keen_count() > 0;
+    if (!is_judged_by_keen) fit_candidates();
     while (Candidate* best = least_squared_error()) {
-      if (const std::optional<Place> place = written(*best)) return place;
+      if (!is_judged_by_keen || fit(best->plan, best->heights)) {
+        if (const std::optional<Place> place = written(*best)) return place;
+      }
       best->is_rejected = true;
     }
     return std::nullopt;
+  }
+
+  void gather_few() {
+    star_.gather_few(stencil_, mesh_, vertices_, samples_);
+    judge_.begin();
+  }
+
+  /// Rejects the candidates that no height keeps near the samples gathered so far.
+  /// \return whether one is left.
+  bool fit_candidates() {
+    bool is_any_left = false;
+    for (Candidate& candidate : candidates_) {
+      if (!candidate.is_rejected) candidate.is_rejected = !fit(candidate.plan, candidate.heights);
+      is_any_left = is_any_left || !candidate.is_rejected;
+    }
+    return is_any_left;
   }
 
   std::optional<Place> onto_line(const Place& place) {
     StarHeights heights;
     if (!fit(place.plan, heights) || !is_star_shaped(place.plan)) return std::nullopt;
     refusal_ = Collapsibility::kOverTolerance;
-    if (!judge_.holds(star_, place, samples_, tolerance_m_)) return std::nullopt;
+    if (!judge_.holds(star_, place, tolerance_m_)) return std::nullopt;
     return place;
   }
 
@@ -338,7 +365,7 @@ class StrictCollapse {
                                                  : placer_.over_datum_m(candidate.plan, water_m_);
     const Place place = placer_.place(candidate.plan, height_m);
     if (!is_star_shaped(place.plan)) return std::nullopt;
-    if (!judge_.holds(star_, place, samples_, tolerance_m_)) return std::nullopt;
+    if (!judge_.holds(star_, place, tolerance_m_)) return std::nullopt;
     return place;
   }
 
@@ -392,7 +419,8 @@ class StrictCollapse {
     if (stencil_.core_size == 3) {
       samples_.clear(HalfedgeMesh::triangle(mesh_.opposite(stencil_.dying[0])));
     }
-    samples_.share_out(star_.triangles(), star_.samples(), judge_.sectors(star_));
+    samples_.share_out(star_.triangles(), star_.samples(), star_.keen_count(),
+                       judge_.sectors(star_));
   }
 
   VertexId target_of(std::uint32_t v) {

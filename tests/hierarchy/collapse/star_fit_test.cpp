@@ -42,14 +42,13 @@ class Octagon {
   }
 
   const Star& star() const { return star_; }
-  const CoveredSamples& samples() const { return samples_; }
   double origin_m() const { return star_.origin().height_m; }
 
   StarVerdict fit(GridPoint centre, float tolerance_m, StarHeights& heights) {
     return judge_.fit(star_, star_.centre(centre), tolerance_m, 0, heights);
   }
   bool holds(GridPoint centre, double height_m, double tolerance_m) {
-    return judge_.holds(star_, {centre, height_m, {}}, samples_, tolerance_m);
+    return judge_.holds(star_, {centre, height_m, {}}, tolerance_m);
   }
   const Place& corner(int k) const { return vertices_[k].place; }
 
