@@ -1,6 +1,7 @@
 #include "tiler/build.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_for_each.h>
 #include <tbb/task_arena.h>
 
@@ -193,24 +194,29 @@ class Build {
       records.push_back(std::move(read.descendants));
     }
     BuiltTile built = build_parent(source_, tile, meshes, finished_seams(tile), tolerance_m);
-    for (std::size_t c = 0; c < ids.size(); ++c) {
-      write_tile(ids[c], meshes[c], built.child_targets[c], std::move(records[c]),
-                 finished.descendants);
+    // isolated: else a thread that waits here may begin another tile and hold both in memory
+    tbb::this_task_arena::isolate([&] {
+      tbb::parallel_for(std::size_t{0}, ids.size(), [&](std::size_t c) {
+        write_tile(ids[c], meshes[c], built.child_targets[c], records[c]);
+      });
+    });
+    for (const auto& of_child : records) {
+      finished.descendants.insert(finished.descendants.end(), of_child.begin(), of_child.end());
     }
     finished.mesh = std::move(built.mesh);
     write_finished_tile(finished, folder_.finished_tile(tile));
     for (const TileId& child : ids) std::filesystem::remove(folder_.finished_tile(child));
   }
 
-  /// Writes a tile's glb and appends its record and those of its descendants to \p records.
+  /// Writes a tile's glb and puts its record before those of its descendants.
   void write_tile(const TileId& tile, const TileMesh& mesh, std::span<const LatticePoint> targets,
-                  std::vector<TileRecord> descendants, std::vector<TileRecord>& records) const {
+                  std::vector<TileRecord>& records) const {
     if (mesh.triangles.empty()) return;
     TileRecord record{.tile = tile,
                       .triangles = static_cast<std::int64_t>(mesh.triangles.size()),
                       .error = mesh.error,
                       .box = {.axes = axes_of(world_, pyramid_.window(tile))}};
-    for (const TileRecord& below : descendants) {
+    for (const TileRecord& below : records) {
       record.error.max_m = std::max(record.error.max_m, below.error.max_m);
       if (below.tile.level == tile.level - 1) record.box.add(below.box);
     }
@@ -237,8 +243,7 @@ class Build {
     write_whole_file(folder_.root() / glb_path(data_set_.format, tile, pyramid_.root_level()), glb);
     record.skirt_triangles = static_cast<std::int64_t>(skirt.triangles.size());
     record.bytes = static_cast<std::int64_t>(glb.size());
-    records.push_back(record);
-    records.insert(records.end(), descendants.begin(), descendants.end());
+    records.insert(records.begin(), record);
   }
 
   TileSkirt make_skirt(const TileId& tile, const TileMesh& mesh,
@@ -262,8 +267,8 @@ class Build {
   BuildResult finish() {
     const TileId root{pyramid_.root_level(), 0, 0};
     FinishedTile finished = read_finished_tile(folder_.finished_tile(root));
-    std::vector<TileRecord> records;
-    write_tile(root, finished.mesh, finished.mesh.points, std::move(finished.descendants), records);
+    std::vector<TileRecord>& records = finished.descendants;
+    write_tile(root, finished.mesh, finished.mesh.points, records);
     if (records.empty()) {
       throw InputError(
           "the DEM has no three neighbouring samples with heights, so there is nothing to show. "

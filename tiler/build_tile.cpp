@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <optional>
 #include <set>
+#include <unordered_map>
 
 #include "core/errors.h"
 #include "hierarchy/collapse/strict_collapse.h"
+#include "hierarchy/mesh/boundary_vertices.h"
 #include "tiler/gltf/terrain_normals.h"
 #include "tiler/seams/join_tiles.h"
 #include "tiler/tile/measure.h"
@@ -222,17 +224,6 @@ class TileBuild {
   Reference reference_;
 };
 
-/// Which vertices have an edge with a triangle on one side only.
-std::vector<bool> find_boundary(std::size_t vertex_count, const std::vector<Corners>& triangles) {
-  const hierarchy::HalfedgeMesh mesh(static_cast<std::uint32_t>(vertex_count), triangles);
-  std::vector<bool> boundary(vertex_count, false);
-  for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
-    const hierarchy::VertexId id{v};
-    if (mesh.is_boundary(id)) boundary[mesh.origin(id)] = true;
-  }
-  return boundary;
-}
-
 /// Inside, a vertex is free; on the rim it keeps its sample, and on a seam its place as well.
 void set_kind(TerrainVertex& vertex, bool is_boundary, const BorderPlace& border,
               const Pyramid& pyramid, const TileId& tile) {
@@ -252,22 +243,51 @@ void set_line_kinds(TerrainMesh& mesh) {
   }
 }
 
+/// The vertices of a tile that its seams are about.
+class SeamVertices {
+ public:
+  SeamVertices(const std::vector<BorderPlace>& borders, const std::vector<SeamChain>& seams) {
+    for (const SeamChain& seam : seams) {
+      for (const auto& [gone, onto] : seam) {
+        numbers_.emplace(Key{gone.column, gone.row}, kNone);
+        numbers_.emplace(Key{onto.column, onto.row}, kNone);
+      }
+    }
+    for (std::uint32_t v = 0; v < borders.size(); ++v) {
+      const auto found = numbers_.find(Key{borders[v].column, borders[v].row});
+      if (found != numbers_.end() && found->second == kNone) found->second = v;
+    }
+  }
+
+  std::optional<std::uint32_t> find(const BorderPlace& border) const {
+    const std::uint32_t v = numbers_.at(Key{border.column, border.row});
+    return v == kNone ? std::nullopt : std::optional(v);
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  using Key = std::pair<double, double>;
+  struct Hash {
+    std::size_t operator()(const Key& key) const {
+      return std::hash<double>()(key.first) * 0x9E3779B97F4A7C15U ^ std::hash<double>()(key.second);
+    }
+  };
+
+  std::unordered_map<Key, std::uint32_t, Hash> numbers_;
+};
+
 /// Takes the vertices out of a tile that its seams leave out: as their triangles' corners become
 /// others, those that lose one vanish.
 FinerLevel leave_out(const std::vector<BorderPlace>& borders, const std::vector<SeamChain>& seams,
                      std::vector<Corners>& triangles) {
-  std::map<std::pair<double, double>, std::uint32_t> by_place;
-  for (std::uint32_t v = 0; v < borders.size(); ++v) {
-    if (!borders[v].is_none()) by_place.emplace(std::pair{borders[v].row, borders[v].column}, v);
-  }
+  const SeamVertices seam_vertices(borders, seams);
   FinerLevel finer{.places = {}, .triangles = triangles, .target = {}};
   for (std::uint32_t v = 0; v < borders.size(); ++v) finer.target.push_back(v);
   for (const SeamChain& seam : seams) {
     for (const auto& [gone, onto] : seam) {
-      const auto from = by_place.find({gone.row, gone.column});
-      const auto to = by_place.find({onto.row, onto.column});
+      const auto from = seam_vertices.find(gone), to = seam_vertices.find(onto);
       // where only the neighbour has triangles, there is nothing to take out
-      if (from != by_place.end() && to != by_place.end()) finer.target[from->second] = to->second;
+      if (from && to) finer.target[*from] = *to;
     }
   }
   for (Corners& corners : triangles) {
@@ -309,7 +329,7 @@ BuiltTile build_leaf(const TileSource& source, const TileId& tile,
   if (full.triangles.empty()) return {};
 
   const std::vector<BorderPlace> places = places_of(full, samples.window());
-  const std::vector<bool> boundary = find_boundary(places.size(), full.triangles);
+  const std::vector<bool> boundary = hierarchy::boundary_vertices(places.size(), full.triangles);
   const FinerLevel finer = leave_out(places, seams, full.triangles);
   TerrainMesh mesh{{}, std::move(full.triangles), std::move(full.edges)};
   for (const SampleId& sample : full.samples) {
@@ -339,7 +359,8 @@ BuiltTile build_parent(const TileSource& source, const TileId& tile,
   if (joined.triangles.empty()) return result;
 
   TileBuild build(source, tile, joined.triangles.size());
-  const std::vector<bool> boundary = find_boundary(joined.points.size(), joined.triangles);
+  const std::vector<bool> boundary =
+      hierarchy::boundary_vertices(joined.points.size(), joined.triangles);
   FinerLevel finer = leave_out(joined.borders, seams, joined.triangles);
   TerrainMesh mesh{{}, std::move(joined.triangles), std::move(joined.lines)};
   for (std::uint32_t v = 0; v < joined.points.size(); ++v) {

@@ -1,5 +1,8 @@
 #include "tiler/tile/measure.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -105,10 +108,13 @@ class Measurement {
     for (const auto& [sample, nearest] : near) worst_m_[sample] = nearest.error_m;
   }
 
-  void note(double noted_m, std::vector<bool>& is_noted) const {
+  /// The samples that the mesh is farther from than this.
+  std::vector<std::size_t> farther_than(double noted_m) const {
+    std::vector<std::size_t> samples;
     for (std::size_t k = 0; k < worst_m_.size(); ++k) {
-      if (worst_m_[k] > noted_m) is_noted[k] = true;
+      if (worst_m_[k] > noted_m) samples.push_back(k);
     }
+    return samples;
   }
 
   MeasuredError result() const {
@@ -231,15 +237,21 @@ Measured measure(std::span<const MeasuredMesh> meshes, const TileSamples& sample
   std::vector<Measured> in_patch(samples.patch_count());
   samples.for_each_patch([&](std::size_t k, const Window& window, const HeightGrid& grid) {
     const Patch patch(frame, samples.window(), window, grid);
-    std::vector<bool> is_noted(static_cast<std::size_t>(window.columns * window.rows), false);
-    for (const MeasuredMesh& mesh : meshes) {
-      const Measurement measurement = measured(mesh, patch, frame, step_m);
-      in_patch[k].errors.push_back(measurement.result());
-      measurement.note(noted_m, is_noted);
-    }
-    for (std::size_t i = 0; i < is_noted.size(); ++i) {
-      if (is_noted[i]) in_patch[k].noted.push_back(patch.sample(i));
-    }
+    in_patch[k].errors.resize(meshes.size());
+    std::vector<std::vector<std::size_t>> noted(meshes.size());
+    // isolated: else a thread that waits here may begin another tile and hold both in memory
+    tbb::this_task_arena::isolate([&] {
+      tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t m) {
+        const Measurement measurement = measured(meshes[m], patch, frame, step_m);
+        in_patch[k].errors[m] = measurement.result();
+        noted[m] = measurement.farther_than(noted_m);
+      });
+    });
+    std::vector<std::size_t> by_any;
+    for (const auto& of_mesh : noted) by_any.insert(by_any.end(), of_mesh.begin(), of_mesh.end());
+    std::ranges::sort(by_any);
+    by_any.erase(std::unique(by_any.begin(), by_any.end()), by_any.end());
+    for (const std::size_t i : by_any) in_patch[k].noted.push_back(patch.sample(i));
   });
   Measured all{std::vector<MeasuredError>(meshes.size())};
   for (const Measured& patch : in_patch) {
