@@ -73,7 +73,7 @@ LocalSurface CollapseJudge::surface(TriangleId t, const TriangleFrame& frame) {
   return {};
 }
 
-bool CollapseJudge::complete(TriangleId t) {
+bool CollapseJudge::find_stencil(TriangleId t) {
   switch (walker_.around_triangle(t, stencil_)) {
     case Collapsibility::kYes:
       break;
@@ -94,9 +94,8 @@ bool CollapseJudge::complete(TriangleId t) {
   return true;
 }
 
-std::optional<CollapsePlan> CollapseJudge::plan(TriangleId t, const TriangleFrame& frame,
-                                                const LocalSurface& surface) {
-  if (!complete(t)) return std::nullopt;
+std::optional<CollapsePlan> CollapseJudge::place(const TriangleFrame& frame,
+                                                 const LocalSurface& surface) {
   const auto rule = border_rule(level_, stencil_, rules_);
   if (!rule) {
     rejection_ = Rejection::kBoundary;

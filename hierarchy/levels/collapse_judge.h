@@ -28,7 +28,13 @@ class CollapseJudge {
   /// Is the triangle collapsible, and where does it go?
   /// \return nothing if not; rejection() says why. stencil() is that of \p t afterwards.
   std::optional<CollapsePlan> plan(TriangleId t, const TriangleFrame& frame,
-                                   const LocalSurface& surface);
+                                   const LocalSurface& surface) {
+    return find_stencil(t) ? place(frame, surface) : std::nullopt;
+  }
+  /// The first half of plan(): is the stencil complete, and would it leave no cycle?
+  bool find_stencil(TriangleId t);
+  /// The second half. \pre find_stencil() has just found that of the triangle.
+  std::optional<CollapsePlan> place(const TriangleFrame& frame, const LocalSurface& surface);
 
   /// E(T): largest distance between the surface and the edges of the star about the collapse point.
   /// \pre plan() has just found \p plan.
@@ -43,7 +49,6 @@ class CollapseJudge {
  private:
   void add_ancestors(VertexId v, const TriangleFrame& frame);
   bool widen();
-  bool complete(TriangleId t);
   Eigen::Vector3d collapse_point(const BorderRule& rule, const TriangleFrame& frame,
                                  const LocalSurface& surface) const;
   bool sees_polygon(const Eigen::Vector3d& point, const TriangleFrame& frame) const;

@@ -69,6 +69,9 @@ class HalfedgeMesh {
   VertexId start(HalfedgeId h) const { return start_[h]; }
   VertexId end(HalfedgeId h) const { return start_[next(h)]; }
   VertexId apex(HalfedgeId h) const { return start_[prev(h)]; }
+  std::array<VertexId, 3> corners(TriangleId t) const {
+    return {start_[halfedge(t, 0)], start_[halfedge(t, 1)], start_[halfedge(t, 2)]};
+  }
   /// The next outgoing half-edge of start(h), counter-clockwise.
   HalfedgeId rotate(HalfedgeId h) const { return opposite_[prev(h)]; }
   /// An outgoing half-edge of a live vertex; kNoHalfedge if the vertex has no triangle.
