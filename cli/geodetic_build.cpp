@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include "core/errors.h"
-#include "ingest/geoid.h"
 #include "ingest/resample.h"
 #include "ingest/resampling_error.h"
 #include "ingest/water_mask.h"
@@ -12,31 +11,6 @@
 
 namespace terrane::cli {
 namespace {
-
-/// The geoid that a DEM's heights are over; null: the ellipsoid. Says what was decided and why.
-std::unique_ptr<ingest::Geoid> geoid_of(const ingest::Dem& dem, const GeodeticSettings& settings,
-                                        Progress& progress) {
-  if (settings.geoid == "none") return nullptr;
-  if (!settings.geoid.empty()) return ingest::open_geoid(settings.geoid);
-  const std::string& vertical = dem.description().vertical_crs;
-  if (vertical.empty()) {
-    progress.note(fmt::format(
-        "{}: does not say what its heights are over; they are taken as over the WGS 84 ellipsoid. "
-        "For heights over sea level add --geoid egm96",
-        dem.name()));
-    return nullptr;
-  }
-  if (vertical == ingest::kEllipsoidalHeight) return nullptr;
-  if (vertical == "EGM96 height") {
-    progress.note(fmt::format("{}: heights are over EGM96, as its CRS says", dem.name()));
-    return ingest::open_geoid("egm96");
-  }
-  progress.note(fmt::format(
-      "{}: heights are over '{}', for which no grid is known; egm96 is used instead, which is "
-      "within a few metres of other sea levels. Name a better one with --geoid, or none",
-      dem.name(), vertical));
-  return ingest::open_geoid("egm96");
-}
 
 /// A file that goes with its owner.
 struct TemporaryFile {
@@ -48,11 +22,63 @@ struct TemporaryFile {
   }
 };
 
-std::string described(const ingest::Resampling& plan, const GeodeticSettings& settings,
-                      const std::vector<std::string>& water, const ingest::Geoid* geoid) {
-  return fmt::format("zoom {}, {}; no data as {} m; {}; water: {}", plan.tiles.zoom, plan.method,
+std::string described(const GeodeticSettings& settings, const std::vector<std::string>& water,
+                      const ingest::Geoid* geoid) {
+  return fmt::format("{}; no data as {} m; {}; water: {}",
+                     settings.max_zoom ? fmt::format("zoom {}", *settings.max_zoom) : "any zoom",
                      settings.fill_m, geoid == nullptr ? "over the ellipsoid" : geoid->name(),
                      fmt::join(water, ", "));
+}
+
+/// A DEM on the posts of a zoom.
+struct Resampled {
+  ingest::Resampling plan;
+  ingest::ResamplingError error = {};
+  std::unique_ptr<GeodeticHeights> heights = nullptr;
+};
+
+// what is left of the tolerance for the simplification: at least as much again
+constexpr double kShareOfPosts = 0.5;
+
+/// Resamples to the zoom that was asked for, or to the coarsest that leaves room for the tolerance
+/// at the DEM's samples.
+Resampled resample(const ingest::Dem& dem, const HeightStatistics& statistics,
+                   ingest::ResampleOptions options, double tolerance_m,
+                   const std::filesystem::path& file, Progress& progress) {
+  constexpr int kMostFiner = 2;
+  options.fit_to_m = tolerance_m / 8;
+  const bool is_asked_for = options.zoom.has_value();
+  for (int finer = 0;; ++finer) {
+    Resampled result{.plan = ingest::plan_resampling(dem, statistics, options)};
+    const GeodeticTiles& tiles = result.plan.tiles;
+    progress.note(fmt::format("{}: resampled to zoom {} ({}), {} x {} tiles", dem.name(),
+                              tiles.zoom, result.plan.method, tiles.columns, tiles.rows));
+    result.heights = ingest::resample(dem, result.plan, options, file, progress);
+    result.error = ingest::measure_resampling(dem, *result.heights, options.geoid);
+    progress.note(
+        fmt::format("{}: its samples are at most {:.2f} m off the posts' surface, RMS "
+                    "{:.2f} m",
+                    dem.name(), result.error.max_m, result.error.rms_m));
+    const bool is_near = result.error.max_m <= kShareOfPosts * tolerance_m;
+    if (is_near || is_asked_for || finer == kMostFiner || tiles.zoom == ingest::kFinestZoom) {
+      return result;
+    }
+    options.zoom = tiles.zoom + 1;
+  }
+}
+
+/// Can a mesh that begins at the posts be within the tolerance of the DEM's samples? Says so if
+/// not.
+bool can_hold(const Resampled& resampled, const std::string& dem, double tolerance_m,
+              Progress& progress) {
+  constexpr double kRoom = 0.9;
+  if (resampled.error.max_m <= kRoom * tolerance_m) return true;
+  progress.note(fmt::format(
+      "{}: zoom {} is too coarse for a tolerance of {} m at the DEM's samples; it is held at the "
+      "posts, and what the samples are off is in terrane.json. Use a larger --max-zoom or a larger "
+      "--tolerance",
+      dem, resampled.plan.tiles.zoom, tolerance_m));
+  return false;
 }
 
 }  // namespace
@@ -68,8 +94,8 @@ void add_geodetic_options(CLI::App& command, GeodeticOptionsGiven& given) {
                      "Geodetic: what the heights are over: egm96, a file with a grid, or none: the "
                      "WGS 84 ellipsoid [as the DEM's CRS says, else none]");
   command.add_option("--max-zoom", given.max_zoom,
-                     "Geodetic: finest zoom, 0 to 22 [the coarsest with cells no larger than the "
-                     "DEM's]");
+                     "Geodetic: finest zoom, 0 to 22 [the coarsest that can hold the tolerance at "
+                     "the DEM's samples]");
   command.add_option("--fill", given.fill_m,
                      "Geodetic: height in metres of what the DEM has no data for [0]");
 }
@@ -105,6 +131,30 @@ void check(const GeodeticSettings& settings) {
       fmt::format("{}: is for --scheme geodetic alone. Leave it away, or add that", useless));
 }
 
+std::unique_ptr<ingest::Geoid> geoid_of(const ingest::Dem& dem, const GeodeticSettings& settings,
+                                        Progress& progress) {
+  if (settings.geoid == "none") return nullptr;
+  if (!settings.geoid.empty()) return ingest::open_geoid(settings.geoid);
+  const std::string& vertical = dem.description().vertical_crs;
+  if (vertical.empty()) {
+    progress.note(fmt::format(
+        "{}: does not say what its heights are over; they are taken as over the WGS 84 ellipsoid. "
+        "For heights over sea level add --geoid egm96",
+        dem.name()));
+    return nullptr;
+  }
+  if (vertical == ingest::kEllipsoidalHeight) return nullptr;
+  if (vertical == "EGM96 height") {
+    progress.note(fmt::format("{}: heights are over EGM96, as its CRS says", dem.name()));
+    return ingest::open_geoid("egm96");
+  }
+  progress.note(fmt::format(
+      "{}: heights are over '{}', for which no grid is known; egm96 is used instead, which is "
+      "within a few metres of other sea levels. Name a better one with --geoid, or none",
+      dem.name(), vertical));
+  return ingest::open_geoid("egm96");
+}
+
 tiler::BuildResult build_geodetic(const ingest::Dem& dem, const HeightStatistics& statistics,
                                   const GeodeticSettings& settings,
                                   const std::vector<std::string>& water,
@@ -113,10 +163,9 @@ tiler::BuildResult build_geodetic(const ingest::Dem& dem, const HeightStatistics
   const auto geoid = geoid_of(dem, settings, progress);
   const ingest::ResampleOptions options{
       .zoom = settings.max_zoom, .fill_m = settings.fill_m, .geoid = geoid.get()};
-  const ingest::Resampling plan = ingest::plan_resampling(dem, statistics, options);
   tiler::GeodeticOptions geodetic{.tolerance_m = build.tolerance_m,
                                   .jobs = build.jobs,
-                                  .source = described(plan, settings, water, geoid.get()),
+                                  .source = described(settings, water, geoid.get()),
                                   .attribution = build.format.attribution};
   if (!water.empty()) {
     const auto mask = ingest::open_water_mask(water);
@@ -128,18 +177,15 @@ tiler::BuildResult build_geodetic(const ingest::Dem& dem, const HeightStatistics
   if (tiler::is_finished(out, tiler::geodetic_key(statistics, geodetic))) {
     return {.was_up_to_date = true};
   }
-  progress.note(fmt::format("{}: resampled to zoom {} ({}), {} x {} tiles", dem.name(),
-                            plan.tiles.zoom, plan.method, plan.tiles.columns, plan.tiles.rows));
   // beside the output and not in it: that folder may be cleared
   const TemporaryFile file{out.string() + ".resampled.tif"};
-  const auto heights = ingest::resample(dem, plan, options, file.path, progress);
-  const ingest::ResamplingError error = ingest::measure_resampling(dem, *heights, geoid.get());
-  progress.note(
-      fmt::format("{}: its samples are at most {:.2f} m off the posts' surface, RMS {:.2f} m",
-                  dem.name(), error.max_m, error.rms_m));
-  geodetic.resampling_max_error_m = error.max_m;
-  geodetic.resampling_rms_error_m = error.rms_m;
-  return tiler::build_geodetic(*heights, statistics, geodetic, out, progress);
+  const Resampled resampled =
+      resample(dem, statistics, options, build.tolerance_m, file.path, progress);
+  geodetic.holds_dem_samples = can_hold(resampled, dem.name(), build.tolerance_m, progress);
+  geodetic.resampling = {.method = resampled.plan.method,
+                         .max_error_m = resampled.error.max_m,
+                         .rms_error_m = resampled.error.rms_m};
+  return tiler::build_geodetic(*resampled.heights, statistics, geodetic, out, progress);
 }
 
 }  // namespace terrane::cli

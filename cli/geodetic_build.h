@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "core/height_statistics.h"
 #include "core/progress.h"
 #include "ingest/dem.h"
+#include "ingest/geoid.h"
 #include "tiler/build.h"
 
 namespace terrane::cli {
@@ -35,6 +37,10 @@ void apply(const GeodeticOptionsGiven& given, GeodeticSettings& settings);
 
 /// \throws ConfigError for a format that its scheme does not have, or an option that is of no use.
 void check(const GeodeticSettings& settings);
+
+/// The geoid that a DEM's heights are over; null: the ellipsoid. Says what was decided and why.
+std::unique_ptr<ingest::Geoid> geoid_of(const ingest::Dem& dem, const GeodeticSettings& settings,
+                                        Progress& progress);
 
 /// Builds a DEM onto the geodetic quadtree.
 /// \param water  layers of polygons for the water mask.

@@ -5,6 +5,7 @@
 
 #include "core/georeference.h"
 #include "core/height_grid.h"
+#include "core/loose_samples.h"
 
 namespace terrane {
 
@@ -70,6 +71,13 @@ class GeodeticHeights {
   /// Thread-safe. The same post gives the same bits at every call.
   /// \throws InputError if the heights cannot be read.
   virtual HeightGrid read(int zoom, const Window& posts) const = 0;
+
+  /// The samples of the DEM that the heights were made from, counted in posts of the finest zoom:
+  /// those from the window's first column and row to its last ones, in a fixed order.
+  ///
+  /// Thread-safe.
+  /// \throws InputError if they cannot be read.
+  virtual std::vector<LooseSample> dem_samples(const Window& posts) const = 0;
 
   /// Bounds of all heights.
   virtual double min_height_m() const = 0;

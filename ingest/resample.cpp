@@ -10,7 +10,9 @@
 #include <limits>
 
 #include "core/errors.h"
+#include "ingest/dem_samples.h"
 #include "ingest/fill_beside.h"
+#include "ingest/fit_posts.h"
 #include "ingest/gdal_scope.h"
 #include "ingest/geographic_inverse.h"
 #include "ingest/grid_extent.h"
@@ -19,8 +21,6 @@
 namespace terrane::ingest {
 namespace {
 
-constexpr int kMostZoom = 22;  // cells of 7 cm
-
 // voids up to twice as wide are interpolated
 constexpr int kKeptCells = 32;
 
@@ -28,7 +28,7 @@ constexpr int kKeptCells = 32;
 int fitting_zoom(double spacing_deg) {
   constexpr double kLarger = 1.1;
   int zoom = 0;
-  while (zoom < kMostZoom && GeodeticZoom{zoom}.cell_deg() > kLarger * spacing_deg) ++zoom;
+  while (zoom < kFinestZoom && GeodeticZoom{zoom}.cell_deg() > kLarger * spacing_deg) ++zoom;
   return zoom;
 }
 
@@ -254,14 +254,22 @@ void warp(const Dem& dem, const Resampling& plan, const ResampleOptions& asked,
           {.fill_m = asked.fill_m, .kept_cells = kKeptCells, .ramp_cells = plan.ramp_cells})) {
     throw InputError(fmt::format("{}: its voids cannot be filled ({})", dem.name(), gdal.reason()));
   }
+  if (plan.method == "bilinear" && std::isfinite(asked.fit_to_m)) {
+    fit_posts(*to->GetRasterBand(1), posts, DemSamples(dem, plan.tiles.zoom, nullptr),
+              plan.tiles.zoom, asked.fit_to_m);
+  }
 }
 
 /// Heights from the file, raised to the ellipsoid, and what fills the rest of the Earth.
 class ResampledHeights final : public GeodeticHeights {
  public:
-  ResampledHeights(const Resampling& plan, const ResampleOptions& options,
+  ResampledHeights(const Dem& dem, const Resampling& plan, const ResampleOptions& options,
                    const std::filesystem::path& file)
-      : tiles_(plan.tiles), posts_(plan.posts), options_(options), file_(file) {
+      : tiles_(plan.tiles),
+        posts_(plan.posts),
+        options_(options),
+        file_(file),
+        samples_(dem, plan.tiles.zoom, options.geoid) {
     const GdalScope gdal;
     dataset_.reset(GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
     if (!dataset_) throw_unreadable(gdal);
@@ -272,6 +280,9 @@ class ResampledHeights final : public GeodeticHeights {
   }
 
   GeodeticTiles tiles() const override { return tiles_; }
+  std::vector<LooseSample> dem_samples(const Window& posts) const override {
+    return samples_.in(posts);
+  }
   double min_height_m() const override { return min_m_; }
   double max_height_m() const override { return max_m_; }
 
@@ -374,6 +385,7 @@ class ResampledHeights final : public GeodeticHeights {
   Window posts_;
   ResampleOptions options_;
   std::filesystem::path file_;
+  DemSamples samples_;
   GDALDatasetUniquePtr dataset_;
   double min_m_ = 0, max_m_ = 0;
 };
@@ -387,8 +399,9 @@ Resampling plan_resampling(const Dem& dem, const HeightStatistics& statistics,
         "{}: has no CRS, so it has no place in the geodetic quadtree. Name it with --crs",
         dem.name()));
   }
-  if (options.zoom && (*options.zoom < 0 || *options.zoom > kMostZoom)) {
-    throw ConfigError(fmt::format("--max-zoom {}: must be from 0 to {}", *options.zoom, kMostZoom));
+  if (options.zoom && (*options.zoom < 0 || *options.zoom > kFinestZoom)) {
+    throw ConfigError(
+        fmt::format("--max-zoom {}: must be from 0 to {}", *options.zoom, kFinestZoom));
   }
   const GridExtent extent = extent_of(dem);
   const int fitting = fitting_zoom(extent.spacing_deg);
@@ -404,7 +417,7 @@ std::unique_ptr<GeodeticHeights> resample(const Dem& dem, const Resampling& plan
                                           const ResampleOptions& options,
                                           const std::filesystem::path& file, Progress& progress) {
   warp(dem, plan, options, file, progress);
-  auto heights = std::make_unique<ResampledHeights>(plan, options, file);
+  auto heights = std::make_unique<ResampledHeights>(dem, plan, options, file);
   heights->find_bounds();
   return heights;
 }

@@ -13,8 +13,8 @@ struct ResamplingError {
   std::int64_t samples = 0;
 };
 
-/// Measures, at each sample with a height, the vertical distance to the bilinear surface between
-/// the four posts around it.
+/// Measures, at each sample with a height, the vertical distance to the surface between the posts
+/// (post_surface.h).
 ///
 /// \param geoid  what the DEM's heights are over; null: the ellipsoid.
 ResamplingError measure_resampling(const Dem& dem, const GeodeticHeights& heights,

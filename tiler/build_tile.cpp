@@ -62,7 +62,7 @@ class TileBuild {
       : source_(source),
         tile_(tile),
         samples_(source.heights, source.pyramid.window(tile),
-                 normal_reach(source.pyramid.octave(tile.level)), input_triangles),
+                 normal_reach(source.pyramid.octave(tile.level)), input_triangles, source.loose),
         frame_(source.world, source.lattice, samples_.window(), tile.level),
         reference_(samples_, frame_, step_m() / frame_.spacing_m()) {}
 
@@ -76,7 +76,8 @@ class TileBuild {
     const std::int64_t row = sample.row - samples_.window().row;
     const hierarchy::GridPoint plan{static_cast<std::int32_t>(column * hierarchy::kUnitsPerCell),
                                     static_cast<std::int32_t>(-row * hierarchy::kUnitsPerCell)};
-    return frame_.place(plan, reference_.field().row(row)[column]);
+    const double drop_m = frame_.drop_m(static_cast<double>(column), static_cast<double>(row));
+    return frame_.place(plan, samples_.whole().at(sample.column, sample.row) - drop_m);
   }
 
   Place place_line_vertex(const hierarchy::LineVertex& vertex) const {
@@ -183,7 +184,7 @@ class TileBuild {
       meshes[0].vertices.push_back({plan_of(vertex.place), world_of(vertex.place)});
     }
     if (finer.places.empty()) return meshes;
-    for (const double t : measured_moments(reference_.field())) {
+    for (const double t : measured_moments(reference_)) {
       meshes.push_back({{}, finer.triangles, rim_of(input.vertices, finer.triangles)});
       for (std::size_t v = 0; v < finer.places.size(); ++v) {
         const Place& target = result.mesh.vertices[result.target[v]].place;

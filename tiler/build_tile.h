@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/height_source.h"
+#include "core/loose_samples.h"
 #include "hierarchy/collapse/strict_collapse.h"
 #include "tiler/pyramid.h"
 #include "tiler/seams/seam.h"
@@ -23,6 +24,7 @@ struct TileSource {
   int effort = hierarchy::kDefaultEffort;
   /// Lines and water that tiles keep, if any.
   const TileFeatures* features = nullptr;
+  const LooseSamples* loose = nullptr;  ///< between the samples of heights; null: none
 };
 
 /// What lines do in a leaf tile and on its border.

@@ -9,9 +9,10 @@ void SampleField::keep(std::int64_t block_side_cells, const std::vector<FieldSam
   heights_m.clear();
   const auto block_of = [this](const FieldSample& sample) {
     const auto side = static_cast<std::size_t>(block_cells);
-    return static_cast<std::size_t>(sample.row) / side *
-               static_cast<std::size_t>(blocks().columns) +
-           static_cast<std::size_t>(sample.column) / side;
+    // one that rounding left a little outside is of the block beside it
+    const auto cell = [](float at) { return static_cast<std::size_t>(std::max(at, 0.0F)); };
+    return cell(sample.row) / side * static_cast<std::size_t>(blocks().columns) +
+           cell(sample.column) / side;
   };
   first_kept.assign(static_cast<std::size_t>(blocks().columns * blocks().rows) + 1, 0);
   for (const FieldSample& sample : samples) ++first_kept[block_of(sample) + 1];

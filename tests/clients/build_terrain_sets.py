@@ -20,8 +20,7 @@ ETOPO5 = pathlib.Path(os.environ.get("TERRANE_ETOPO5", "/usr/share/ferret-vis/da
 
 # name: DEM and options of `terrane build`
 TERRAIN_SETS = {
-    # a zoom more than the DEM asks for: its samples are then nearer to the posts
-    "trinidad": ("trinidad", "--geoid egm96 --tolerance 8 --max-zoom 13"),
+    "trinidad": ("trinidad", "--geoid egm96 --tolerance 8"),
     "crater_lake": ("crater_lake/crater_garland_nad27_utm10.tif",
                     f"--geoid egm96 --tolerance 4 --water "
                     f"{DATA / 'crater_lake/crater_lake_shoreline.gpkg'}"),

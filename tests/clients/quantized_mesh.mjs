@@ -205,13 +205,12 @@ function checkWater(name, all) {
   check(isSound && wet > 0, `${name}: water masks are of one byte or 256 x 256, and there is water`);
 }
 
-async function checkHeights(name, {zooms, resampling}, tiles) {
+async function checkHeights(name, {zooms}, tiles) {
   const file = join(folder, `${name}_points.json`);
   if (!existsSync(file)) return;
   const points = JSON.parse(await readFile(file, 'utf8'));
   const {zoom, tolerance_m: tolerance} = zooms.at(-1);
   const off = points.map(([longitude, latitude, height]) => Math.abs(heightAt(tiles, zoom, longitude, latitude) - height));
-  const worst = Math.max(...off), allowed = tolerance + (resampling?.max_error_m ?? 0);
-  const within = off.filter((value) => value <= tolerance).length;
-  check(worst <= allowed, `${name}: ${points.length} samples of the DEM are ${worst.toFixed(2)} m off at most, ${within} of them within the tolerance of ${tolerance} m`);
+  const worst = Math.max(...off);
+  check(worst <= tolerance, `${name}: ${points.length} samples of the DEM are ${worst.toFixed(2)} m off at most, the tolerance is ${tolerance} m`);
 }

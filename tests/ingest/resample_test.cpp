@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
+#include "ingest/dem_samples.h"
+#include "ingest/post_surface.h"
 #include "ingest/resampling_error.h"
 #include "ingest/scan.h"
 #include "tests/ingest/small_raster.h"
@@ -128,6 +131,62 @@ TEST_F(ResampleTest, ADemOfTheWholeEarthHasNoGapWhereItsEndsMeet) {
     const double turn = 2 * M_PI * static_cast<double>(k) / static_cast<double>(all.columns - 1);
     EXPECT_NEAR(std::abs(equator.heights_m[k]), std::abs(100 * std::cos(turn)), 1) << k;
   }
+}
+
+TEST_F(ResampleTest, PostsMeetASummitBetweenThem) {
+  SmallRaster raster = plane();
+  raster.value = [](int column, int row) { return column == 70 && row == 60 ? 500 : 0; };
+  const std::string file = folder_.write("summit.tif", raster);
+  // the four posts around it do not see all of it
+  EXPECT_GT(measure_resampling(*dem_, *resampled(file), nullptr).max_m, 100);
+  const auto heights = resampled(file, {.fit_to_m = 2});
+  EXPECT_LE(measure_resampling(*dem_, *heights, nullptr).max_m, 2.001);
+  // far from it nothing was moved
+  EXPECT_EQ(at(*heights, {8.5, 46.5}), 0);
+}
+
+TEST_F(ResampleTest, PostsMeetEverySampleOfNoiseWhereTheyAreTwiceAsDense) {
+  SmallRaster raster = plane();
+  std::mt19937 random(1);
+  std::vector<double> noise(129 * 129);
+  for (double& height : noise) height = static_cast<double>(random() % 1000) / 10;
+  raster.value = [&](int column, int row) {
+    return noise[static_cast<std::size_t>(row * 129 + column)];
+  };
+  const std::string file = folder_.write("noise.tif", raster);
+  const auto heights = resampled(file, {.zoom = 9, .fit_to_m = 0.5});
+  EXPECT_LE(measure_resampling(*dem_, *heights, nullptr).max_m, 0.501);
+}
+
+TEST_F(ResampleTest, TheSamplesOfADemAreWhereItPutsThem) {
+  SmallRaster raster = plane();
+  raster.geotransform = north_up(179 - 0.5 / 64, 17 + 0.5 / 64, 1.0 / 64);
+  const auto heights = resampled(folder_.write("pacific.tif", raster));
+  const Window posts = plan_.tiles.posts();
+  const std::vector<LooseSample> samples = heights->dem_samples(posts);
+  ASSERT_EQ(samples.size(), 129U * 129U);
+  const double cell_deg = GeodeticZoom{plan_.tiles.zoom}.cell_deg();
+  for (const LooseSample& sample : samples) {
+    const double east_deg = -180 + sample.column * cell_deg - 179,
+                 north = 90 - sample.row * cell_deg;
+    ASSERT_NEAR(sample.height_m, 1000 + 640 * east_deg - 256 * (17 - north), 1e-2);
+  }
+  // each is in one of two halves; those on the meridian between them, which is one of samples, in
+  // both
+  const std::int64_t half = posts.columns / 2;
+  EXPECT_EQ(heights->dem_samples({posts.column, posts.row, half + 1, posts.rows}).size() +
+                heights->dem_samples({posts.column + half, posts.row, half + 1, posts.rows}).size(),
+            129U * 129U + 129U);
+}
+
+TEST(PostSurface, RunsThroughItsPostsAndAlongTheDiagonalsOfTiles) {
+  // in the middle of a cell half of two opposite corners
+  const auto inner = on_surface(70.5, 70.5, 1000);
+  EXPECT_EQ(inner.share, (std::array{0.5, 0.0, 0.5, 0.0}));
+  // the cell in the north-east corner of a tile
+  const auto corner = on_surface(127.5, 64.5, 1000);
+  EXPECT_EQ(corner.share, (std::array{0.0, 0.5, 0.0, 0.5}));
+  EXPECT_EQ(on_surface(70, 70, 1000).share, (std::array{1.0, 0.0, 0.0, 0.0}));
 }
 
 TEST_F(ResampleTest, RefusesADemWithoutACrsAndAZoomOutOfRange) {

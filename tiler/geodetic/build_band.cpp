@@ -28,7 +28,13 @@ class BandBuild {
         world_(band_, band_.shape()),
         lattice_(options.tiles, world_, heights.min_height_m(), heights.max_height_m(),
                  options.tolerance_m),
-        source_{band_, world_, pyramid_, lattice_},
+        source_{band_,
+                world_,
+                pyramid_,
+                lattice_,
+                hierarchy::kDefaultEffort,
+                nullptr,
+                options.holds_dem_samples ? &band_ : nullptr},
         folder_(options.work) {
     const std::array<double, 16> transform = world_.to_ecef();
     to_ecef_ = Eigen::Map<const Eigen::Matrix4d>(transform.data()).topLeftCorner<3, 3>();

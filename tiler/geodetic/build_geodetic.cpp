@@ -21,6 +21,12 @@ namespace fs = std::filesystem;
 // that of CesiumJS for a tile of zoom 0 (a height map of 65 posts): it halves with each zoom
 constexpr double kLevelZeroError_m = 77067.34;
 
+// share of it that a tile with posts of its own may be off: a globe must look like one where
+// nothing finer is
+constexpr double kLargestSeenShare = 1.0 / 16;
+// what nobody sees; and no polynomial follows the whole globe much more closely (TileFrame)
+constexpr double kSmallestSeenShare = 1.0 / 64;
+
 std::string hash_hex(std::string_view text) {
   std::uint64_t hash = 14695981039346656037U;  // FNV-1a
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
@@ -71,6 +77,14 @@ class GeodeticBuild {
     return std::ldexp(options_.tolerance_m, tiles_.zoom - zoom);
   }
 
+  /// Of a zoom with posts of its own.
+  double own_tolerance_m(int zoom) const {
+    const double counted_m = std::ldexp(kLevelZeroError_m, -zoom);
+    const double seen_m = std::clamp(tolerance_m(zoom), kSmallestSeenShare * counted_m,
+                                     kLargestSeenShare * counted_m);
+    return std::max(seen_m, zooms_.back().tolerance_m);
+  }
+
   /// Levels above the finest one that are built from it: up to where four tiles hold the DEM, and
   /// not the roots, as no polynomial follows both of them round the Earth (TileFrame).
   int coarsest_from_finest() const {
@@ -94,12 +108,9 @@ class GeodeticBuild {
     const int zoom = band.tiles.zoom;
     const bool is_finest = zoom == tiles_.zoom;
     for (int level = 0; level <= top; ++level) {
-      const double wished_m = tolerance_m(zoom - level);
-      // a globe must look like one where nothing finer is: a sixteenth of what clients count with
-      const double seen_m = std::max(std::ldexp(kLevelZeroError_m / 16, level - zoom),
-                                     zooms_.empty() ? 0 : zooms_.back().tolerance_m);
-      band.tolerance_m.push_back(is_finest ? wished_m : std::min(wished_m, seen_m));
+      band.tolerance_m.push_back(is_finest ? tolerance_m(zoom - level) : own_tolerance_m(zoom));
     }
+    band.holds_dem_samples = is_finest && options_.holds_dem_samples;
     band.work = work_of(out_) / fmt::format("{}", zoom);
     band.jobs = options_.jobs > 0
                     ? options_.jobs
@@ -163,6 +174,11 @@ class GeodeticBuild {
     return result;
   }
 
+  const char* held_to(const ZoomSummary& zoom) const {
+    if (!zoom.is_held_to_finest) return "own posts";
+    return options_.holds_dem_samples ? "DEM samples" : "finest posts";
+  }
+
   std::string summary_json() const {
     nlohmann::ordered_json json;
     json["format"] = "terrane-geodetic/1";
@@ -171,12 +187,13 @@ class GeodeticBuild {
     json["source"] = options_.source;
     json["dem"] = {{"samples_with_data", statistics_.samples_with_data},
                    {"fingerprint", statistics_.fingerprint}};
-    json["resampling"] = {{"max_error_m", options_.resampling_max_error_m},
-                          {"rms_error_m", options_.resampling_rms_error_m}};
+    json["resampling"] = {{"method", options_.resampling.method},
+                          {"max_error_m", options_.resampling.max_error_m},
+                          {"rms_error_m", options_.resampling.rms_error_m}};
     for (const ZoomSummary& zoom : zooms_) {
       json["zooms"].push_back({{"zoom", zoom.zoom},
                                {"tolerance_m", zoom.tolerance_m},
-                               {"held_to", zoom.is_held_to_finest ? "finest posts" : "own posts"},
+                               {"held_to", held_to(zoom)},
                                {"max_error_m", zoom.max_error_m},
                                {"tiles", zoom.tiles},
                                {"triangles", zoom.triangles},
@@ -199,9 +216,9 @@ class GeodeticBuild {
 }  // namespace
 
 std::string geodetic_key(const HeightStatistics& statistics, const GeodeticOptions& options) {
-  return hash_hex(fmt::format("geodetic {} {} {} {} {} {}", TERRANE_GENERATOR, options.tolerance_m,
-                              statistics.fingerprint, options.source, options.attribution,
-                              options.water_fingerprint));
+  return hash_hex(fmt::format("geodetic 2 {} {} {} {} {} {}", TERRANE_GENERATOR,
+                              options.tolerance_m, statistics.fingerprint, options.source,
+                              options.attribution, options.water_fingerprint));
 }
 
 bool is_finished(const fs::path& out, const std::string& key) {

@@ -12,16 +12,25 @@
 
 namespace terrane::tiler {
 
+/// How the posts came about, for terrane.json.
+struct ResamplingFacts {
+  std::string method;
+  double max_error_m = 0;  ///< of the DEM's samples to the surface between the posts
+  double rms_error_m = 0;
+};
+
 struct GeodeticOptions {
   /// Largest vertical distance of the finest zoom to any post of its grid, in metres; doubles with
   /// each coarser zoom.
   double tolerance_m = 1;
+  /// Whether the tolerance holds at each sample of the DEM as well.
+  /// \pre the surface of the finest posts is nearer to all of them.
+  bool holds_dem_samples = false;
   int jobs = 0;  ///< threads; 0: as many as the machine has cores
   /// What tells this data set from others with the same heights: how they were resampled, filled
   /// and raised to the ellipsoid.
   std::string source;
-  double resampling_max_error_m = 0;  ///< of the DEM's samples to the surface between the posts
-  double resampling_rms_error_m = 0;
+  ResamplingFacts resampling;
   std::string attribution;
   /// The water mask of a tile, as TerrainTile has it; none without water.
   std::function<std::string(double west_deg, double south_deg, double east_deg, double north_deg)>
@@ -40,8 +49,9 @@ bool is_finished(const std::filesystem::path& out, const std::string& key);
 ///
 /// Guarantees: neighbours of a zoom hold the same border vertices and decode to equal heights
 /// there. From the finest zoom up to that at which four tiles at most hold the whole DEM, each tile
-/// is within tolerance_m * 2^level of every post of the *finest* grid as CesiumJS draws it (flat
-/// triangles between Earth-centred places). The zooms beyond have a grid of their own each.
+/// is within tolerance_m * 2^level of every post of the *finest* grid (and of every sample of the
+/// DEM, if asked to) as CesiumJS draws it (flat triangles between Earth-centred places). The zooms
+/// beyond have a grid of their own each.
 ///
 /// \pre \p out was claimed (tiler/output_folder.h).
 /// \throws ConfigError, InputError, OutputError.

@@ -18,6 +18,17 @@ HeightGrid TileBand::read(const Window& window) const {
   return grid;
 }
 
+std::vector<LooseSample> TileBand::in(const Window& window) const {
+  const Window posts = tiles_.posts();
+  std::vector<LooseSample> samples = heights_.dem_samples(
+      {posts.column + window.column, posts.row + window.row, window.columns, window.rows});
+  for (LooseSample& sample : samples) {
+    sample.column -= static_cast<double>(posts.column);
+    sample.row -= static_cast<double>(posts.row);
+  }
+  return samples;
+}
+
 const std::string& TileBand::crs_wkt() const {
   static const std::string wkt =
       "GEOGCRS[\"WGS 84\",DATUM[\"World Geodetic System 1984\",ELLIPSOID[\"WGS 84\",6378137,"

@@ -11,8 +11,9 @@ namespace terrane::tiler {
 
 /// Some tiles of one zoom as a DEM of their own: what the level loop builds on.
 ///
-/// Columns and rows count from the posts of the tiles' north-west corner.
-class TileBand final : public HeightSource, public Georeference {
+/// Columns and rows count from the posts of the tiles' north-west corner. The loose samples between
+/// them are those of the DEM.
+class TileBand final : public HeightSource, public Georeference, public LooseSamples {
  public:
   /// \param heights  must outlive the band.
   TileBand(const GeodeticHeights& heights, const GeodeticTiles& tiles)
@@ -20,6 +21,9 @@ class TileBand final : public HeightSource, public Georeference {
 
   GridShape shape() const override;
   HeightGrid read(const Window& window) const override;
+
+  /// \pre the tiles are of the finest zoom.
+  std::vector<LooseSample> in(const Window& window) const override;
 
   const std::string& crs_wkt() const override;
   PlanPosition to_plan(GridPosition position) const override;

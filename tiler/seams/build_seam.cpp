@@ -90,7 +90,7 @@ class SeamBuild {
       : source_(source),
         seam_(seam),
         strip_(std::move(strip)),
-        samples_(source.heights, window, 0, strip_.triangles.size()),
+        samples_(source.heights, window, 0, strip_.triangles.size(), source.loose),
         frame_(source.world, source.lattice, window, seam.first.level),
         reference_(samples_, frame_, step_m() / frame_.spacing_m()) {
     place_vertices();
@@ -234,7 +234,7 @@ class SeamBuild {
       meshes[0].vertices.push_back(at(vertex.place));
     }
     if (finer_.places.empty()) return meshes;
-    for (const double t : measured_moments(reference_.field())) {
+    for (const double t : measured_moments(reference_)) {
       std::vector<WorldVertex> moving;
       for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
         const WorldVertex& to = meshes[0].vertices[result.target[v]];

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <optional>
 
 #include "hierarchy/collapse/sample_field.h"
 
@@ -22,6 +24,32 @@ constexpr double kOnEdge = 1e-7;  // as a share of a triangle
 // a vertex's place over the grid is rounded to whole units, so a triangle may lie beside its own
 // plan by that: who looks for its samples looks as far
 constexpr double kPlanRounding_cells = 1.0 / hierarchy::kUnitsPerCell;
+
+/// A triangle in the world, met by plumb lines as by rays (Moeller and Trumbore 1997).
+class PlumbTriangle {
+ public:
+  PlumbTriangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c)
+      : corner_(a), side_b_(b - a), side_c_(c - a) {}
+
+  /// Height along the plumb line at which the triangle is met; none if it is not.
+  std::optional<double> height_m(const Plumb& plumb) const {
+    const Eigen::Vector3d p = plumb.up.cross(side_c_);
+    const Eigen::Vector3d s = plumb.base - corner_;
+    const Eigen::Vector3d q = s.cross(side_b_);
+    const double scale = 1 / side_b_.dot(p);
+    const double u = s.dot(p) * scale, v = plumb.up.dot(q) * scale;
+    if (u < -kOnEdge || v < -kOnEdge || u + v > 1 + kOnEdge) return std::nullopt;
+    return side_c_.dot(q) * scale;
+  }
+
+ private:
+  Eigen::Vector3d corner_, side_b_, side_c_;
+};
+
+FieldSample field_sample(const LooseSample& loose, const TileFrame& frame) {
+  return {static_cast<float>(loose.column), static_cast<float>(loose.row),
+          loose.height_m - frame.drop_m(loose.column, loose.row)};
+}
 
 /// The samples of a patch, and where they stand in the world.
 class Patch {
@@ -67,37 +95,94 @@ class Patch {
   std::vector<TileFrame::Row> rows_;
 };
 
+/// The loose samples of a patch, cell by cell, and where they stand in the world.
+class LoosePatch {
+ public:
+  LoosePatch(const TileFrame& frame, const TileSamples& samples, const Window& patch)
+      : first_column_(patch.column - samples.window().column - kMargin),
+        first_row_(patch.row - samples.window().row - kMargin),
+        cells_{patch.columns + 2 * kMargin, patch.rows + 2 * kMargin},
+        samples_(samples.loose_in(patch, kMargin)) {
+    std::ranges::stable_sort(samples_, {}, [&](const LooseSample& s) { return cell_of(s); });
+    first_.assign(static_cast<std::size_t>(cells_.columns * cells_.rows) + 1, 0);
+    for (const LooseSample& sample : samples_) {
+      ++first_[static_cast<std::size_t>(cell_of(sample)) + 1];
+      plumbs_.push_back(frame.plumb(sample.column, sample.row));
+    }
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  }
+
+  const std::vector<LooseSample>& samples() const { return samples_; }
+  const Plumb& plumb(std::size_t k) const { return plumbs_[k]; }
+
+  /// Calls visit(k) for the samples that may lie under a triangle.
+  template <class Visit>
+  void for_each_near(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
+                     double slack_cells, const Visit& visit) const {
+    if (samples_.empty()) return;
+    // a cell reaches to the next post
+    for_each_span(local(a), local(b), local(c), cells_, 1 + slack_cells,
+                  [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+                    const auto begin = static_cast<std::size_t>(row * cells_.columns + first);
+                    const auto end = static_cast<std::size_t>(row * cells_.columns + last + 1);
+                    for (std::size_t k = first_[begin]; k < first_[end]; ++k) visit(k);
+                    return true;
+                  });
+  }
+
+ private:
+  // straight edges in the world lie beside the straight border over the grid: a neighbour's samples
+  // may be under them
+  static constexpr std::int64_t kMargin = 1;
+
+  std::int64_t cell_of(const LooseSample& sample) const {
+    const FieldPoint at = local({sample.column, sample.row, 0});
+    return static_cast<std::int64_t>(at.row) * cells_.columns +
+           static_cast<std::int64_t>(at.column);
+  }
+  FieldPoint local(const FieldPoint& tile_place) const {
+    return {tile_place.column - static_cast<double>(first_column_),
+            tile_place.row - static_cast<double>(first_row_), 0};
+  }
+
+  std::int64_t first_column_, first_row_;  // in the tile
+  GridShape cells_;
+  std::vector<LooseSample> samples_;  // by cell
+  std::vector<Plumb> plumbs_;
+  std::vector<std::size_t> first_;
+};
+
 /// The errors of one mesh at the samples of one patch.
 class Measurement {
  public:
-  Measurement(const TileFrame& frame, double step_m, const Patch& patch)
+  Measurement(const TileFrame& frame, double step_m, const Patch& patch, const LoosePatch& loose)
       : frame_(frame),
         step_m_(step_m),
         patch_(patch),
+        loose_(loose),
         shape_{patch.window.columns, patch.window.rows},
-        worst_m_(static_cast<std::size_t>(shape_.columns * shape_.rows), kUnmeasured) {}
+        worst_m_(static_cast<std::size_t>(shape_.columns * shape_.rows), kUnmeasured),
+        worst_at_loose_m_(loose.samples().size(), kUnmeasured) {}
 
   void add_triangle(const WorldVertex& a, const WorldVertex& b, const WorldVertex& c) {
     if (is_beside(a.plan, b.plan, c.plan)) return;
-    // as a ray along the plumb line meets a triangle (Moeller and Trumbore 1997)
-    const Eigen::Vector3d corner = a.world;
-    const Eigen::Vector3d side_b = b.world - corner, side_c = c.world - corner;
+    const PlumbTriangle triangle(a.world, b.world, c.world);
     const double slack_cells =
         kPlanRounding_cells + std::max({bend_cells(a, b), bend_cells(b, c), bend_cells(c, a)});
     for_each_span(patch_.local(a.plan), patch_.local(b.plan), patch_.local(c.plan), shape_,
                   slack_cells, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
                     for (std::int64_t column = first; column <= last; ++column) {
-                      const Plumb plumb = patch_.plumb(column, row);
-                      const Eigen::Vector3d p = plumb.up.cross(side_c);
-                      const Eigen::Vector3d s = plumb.base - corner;
-                      const Eigen::Vector3d q = s.cross(side_b);
-                      const double scale = 1 / side_b.dot(p);
-                      const double u = s.dot(p) * scale, v = plumb.up.dot(q) * scale;
-                      if (u < -kOnEdge || v < -kOnEdge || u + v > 1 + kOnEdge) continue;
-                      add(column, row, side_c.dot(q) * scale);
+                      const auto height_m = triangle.height_m(patch_.plumb(column, row));
+                      if (height_m) add(column, row, *height_m);
                     }
                     return true;
                   });
+    loose_.for_each_near(a.plan, b.plan, c.plan, slack_cells, [&](std::size_t k) {
+      const auto height_m = triangle.height_m(loose_.plumb(k));
+      if (!height_m) return;
+      const double error_m = std::abs(*height_m - loose_.samples()[k].height_m);
+      worst_at_loose_m_[k] = std::max(worst_at_loose_m_[k], error_m);
+    });
   }
 
   /// Measures what no triangle covers, but lies within a step of the rim: against its nearest
@@ -108,22 +193,27 @@ class Measurement {
     for (const auto& [sample, nearest] : near) worst_m_[sample] = nearest.error_m;
   }
 
-  /// The samples that the mesh is farther from than this.
+  /// The samples that the mesh is farther from than this; loose ones count on from the grid's.
   std::vector<std::size_t> farther_than(double noted_m) const {
     std::vector<std::size_t> samples;
     for (std::size_t k = 0; k < worst_m_.size(); ++k) {
       if (worst_m_[k] > noted_m) samples.push_back(k);
+    }
+    for (std::size_t k = 0; k < worst_at_loose_m_.size(); ++k) {
+      if (worst_at_loose_m_[k] > noted_m) samples.push_back(worst_m_.size() + k);
     }
     return samples;
   }
 
   MeasuredError result() const {
     MeasuredError result;
-    for (const double error_m : worst_m_) {
-      if (error_m == kUnmeasured) continue;
-      result.max_m = std::max(result.max_m, error_m);
-      result.sum_of_squares_m2 += error_m * error_m;
-      ++result.samples;
+    for (const auto* worst_m : {&worst_m_, &worst_at_loose_m_}) {
+      for (const double error_m : *worst_m) {
+        if (error_m == kUnmeasured) continue;
+        result.max_m = std::max(result.max_m, error_m);
+        result.sum_of_squares_m2 += error_m * error_m;
+        ++result.samples;
+      }
     }
     // heights are taken at the frame's places, which are off by a little: on slopes of up to 3 the
     // heights then are by four times that at most
@@ -215,13 +305,15 @@ class Measurement {
   const TileFrame& frame_;
   double step_m_;
   const Patch& patch_;
+  const LoosePatch& loose_;
   GridShape shape_;
   std::vector<double> worst_m_;
+  std::vector<double> worst_at_loose_m_;
 };
 
-Measurement measured(const MeasuredMesh& mesh, const Patch& patch, const TileFrame& frame,
-                     double step_m) {
-  Measurement measurement(frame, step_m, patch);
+Measurement measured(const MeasuredMesh& mesh, const Patch& patch, const LoosePatch& loose,
+                     const TileFrame& frame, double step_m) {
+  Measurement measurement(frame, step_m, patch, loose);
   for (const auto& [a, b, c] : mesh.triangles) {
     measurement.add_triangle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
   }
@@ -237,12 +329,13 @@ Measured measure(std::span<const MeasuredMesh> meshes, const TileSamples& sample
   std::vector<Measured> in_patch(samples.patch_count());
   samples.for_each_patch([&](std::size_t k, const Window& window, const HeightGrid& grid) {
     const Patch patch(frame, samples.window(), window, grid);
+    const LoosePatch loose(frame, samples, window);
     in_patch[k].errors.resize(meshes.size());
     std::vector<std::vector<std::size_t>> noted(meshes.size());
     // isolated: else a thread that waits here may begin another tile and hold both in memory
     tbb::this_task_arena::isolate([&] {
       tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t m) {
-        const Measurement measurement = measured(meshes[m], patch, frame, step_m);
+        const Measurement measurement = measured(meshes[m], patch, loose, frame, step_m);
         in_patch[k].errors[m] = measurement.result();
         noted[m] = measurement.farther_than(noted_m);
       });
@@ -251,7 +344,12 @@ Measured measure(std::span<const MeasuredMesh> meshes, const TileSamples& sample
     for (const auto& of_mesh : noted) by_any.insert(by_any.end(), of_mesh.begin(), of_mesh.end());
     std::ranges::sort(by_any);
     by_any.erase(std::unique(by_any.begin(), by_any.end()), by_any.end());
-    for (const std::size_t i : by_any) in_patch[k].noted.push_back(patch.sample(i));
+    const auto grid_samples = static_cast<std::size_t>(window.columns * window.rows);
+    for (const std::size_t i : by_any) {
+      in_patch[k].noted.push_back(
+          i < grid_samples ? patch.sample(i)
+                           : field_sample(loose.samples()[i - grid_samples], frame));
+    }
   });
   Measured all{std::vector<MeasuredError>(meshes.size())};
   for (const Measured& patch : in_patch) {

@@ -35,7 +35,8 @@ struct Measured {
   std::vector<hierarchy::FieldSample> noted = {};  ///< heights over the frame's curved datum
 };
 
-/// Measures meshes over one tile in the world, along the plumb line of every sample under them.
+/// Measures meshes over one tile in the world, along the plumb line of every sample under them, the
+/// loose ones as well.
 ///
 /// A sample that rounding left outside by less than \p step_m is measured against the nearest point
 /// of the rim. max_m is an upper bound: what the frame may be off is added.

@@ -103,6 +103,23 @@ SampleField full_field(const TileSamples& samples, const TileFrame& frame) {
   return field;
 }
 
+/// Grid samples and loose ones, all of them.
+std::vector<FieldSample> all_samples(const TileSamples& samples, const TileFrame& frame) {
+  std::vector<std::vector<FieldSample>> in_patch(samples.patch_count());
+  samples.for_each_patch([&](std::size_t k, const Window& patch, const HeightGrid& grid) {
+    for_each_height(patch, grid, samples.window(), frame, [&](double column, double row, double z) {
+      in_patch[k].push_back({static_cast<float>(column), static_cast<float>(row), z});
+    });
+  });
+  std::vector<FieldSample> result;
+  for (const auto& part : in_patch) result.insert(result.end(), part.begin(), part.end());
+  for (const LooseSample& loose : samples.loose_in(samples.window(), 0)) {
+    result.push_back({static_cast<float>(loose.column), static_cast<float>(loose.row),
+                      loose.height_m - frame.drop_m(loose.column, loose.row)});
+  }
+  return result;
+}
+
 std::vector<FieldSample> extremes_of_blocks(const TileSamples& samples, const TileFrame& frame) {
   const std::int64_t block_cells = samples.block_cells();
   std::vector<std::vector<FieldSample>> in_patch(samples.patch_count());
@@ -127,18 +144,20 @@ bool is_same(const FieldSample& a, const FieldSample& b) {
 }  // namespace
 
 Reference::Reference(const TileSamples& samples, const TileFrame& frame, double slack_cells) {
-  if (samples.block_cells() == 1) {
+  is_whole_ = samples.block_cells() == 1;
+  if (is_whole_ && !samples.has_loose()) {
     field_ = full_field(samples, frame);
   } else {
     field_ = {samples.window().columns, samples.window().rows, {}};
-    kept_ = extremes_of_blocks(samples, frame);
-    field_.keep(samples.block_cells(), kept_);
+    kept_ = is_whole_ ? all_samples(samples, frame) : extremes_of_blocks(samples, frame);
+    constexpr std::int64_t kBlockOfLoose_cells = 2;
+    field_.keep(std::max(samples.block_cells(), kBlockOfLoose_cells), kept_);
   }
   field_.slack_cells = slack_cells;
 }
 
 bool Reference::learn(const std::vector<FieldSample>& samples) {
-  if (!field_.is_reduced()) return false;
+  if (is_whole_) return false;
   const std::size_t before = kept_.size();
   kept_.insert(kept_.end(), samples.begin(), samples.end());
   std::ranges::sort(kept_, is_before);

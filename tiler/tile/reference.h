@@ -9,9 +9,9 @@
 
 namespace terrane::tiler {
 
-/// What collapses are held against: every sample; or, where there are very many, of each block the
-/// two that stick out most above and below the trend of the terrain around it, and what it was
-/// told to learn.
+/// What collapses are held against: every sample, loose ones too; or, where there are very many, of
+/// each block of the grid's the two that stick out most above and below the trend of the terrain
+/// around it, and what it was told to learn.
 ///
 /// The trend is a plane over TileSamples::kBlocksPerTrend blocks each way: over the block itself it
 /// would follow what is rough in it.
@@ -27,16 +27,20 @@ class Reference {
   /// \return whether any of them was not held against already.
   bool learn(const std::vector<hierarchy::FieldSample>& samples);
 
+  /// Whether every sample is held against.
+  bool is_whole() const { return is_whole_; }
+
  private:
   hierarchy::SampleField field_;
   std::vector<hierarchy::FieldSample> kept_;  // if the field is reduced: what it holds
+  bool is_whole_ = true;
 };
 
 /// The moments of a blend at which it is measured in the world. Every sample of the reference has
 /// been held against the blend at every moment; what a reduced one leaves out has not.
-inline std::span<const double> measured_moments(const hierarchy::SampleField& reference) {
+inline std::span<const double> measured_moments(const Reference& reference) {
   static constexpr double kMoments[] = {0.5, 0.125, 0.25, 0.375, 0.625, 0.75, 0.875};
-  return std::span(kMoments).first(reference.is_reduced() ? std::size(kMoments) : 1);
+  return std::span(kMoments).first(reference.is_whole() ? 1 : std::size(kMoments));
 }
 
 /// Share of the tolerance beyond which samples are worth learning: they are over it soon.

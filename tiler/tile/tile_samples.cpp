@@ -43,8 +43,9 @@ Window widened(const Window& window, std::int64_t margin, const GridShape& shape
 }  // namespace
 
 TileSamples::TileSamples(const HeightSource& heights, const Window& window, std::int64_t margin,
-                         std::size_t input_triangles)
+                         std::size_t input_triangles, const LooseSamples* loose)
     : heights_(heights),
+      loose_(loose),
       window_(window),
       margin_(margin),
       block_cells_(fitting_block_cells(window, input_triangles)) {
@@ -92,6 +93,18 @@ std::size_t TileSamples::patch_of(std::int64_t column, std::int64_t row) const {
   return static_cast<std::size_t>(along(row, window_.row, window_.rows, patch_rows_) *
                                       patches_along_row_ +
                                   along(column, window_.column, window_.columns, patch_columns_));
+}
+
+std::vector<LooseSample> TileSamples::loose_in(const Window& patch, std::int64_t margin) const {
+  if (loose_ == nullptr) return {};
+  std::vector<LooseSample> samples =
+      loose_->in({patch.column - margin, patch.row - margin, patch.columns + 2 * margin,
+                  patch.rows + 2 * margin});
+  for (LooseSample& sample : samples) {
+    sample.column -= static_cast<double>(window_.column);
+    sample.row -= static_cast<double>(window_.row);
+  }
+  return samples;
 }
 
 std::vector<double> TileSamples::heights_m(std::span<const hierarchy::SampleId> samples) const {

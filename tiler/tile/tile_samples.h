@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/height_source.h"
+#include "core/loose_samples.h"
 #include "hierarchy/mesh/grid_triangles.h"
 
 namespace terrane::tiler {
@@ -19,8 +20,9 @@ class TileSamples {
   /// \param window           columns and rows of the DEM.
   /// \param margin           samples that every patch holds beyond its own, as far as the DEM goes.
   /// \param input_triangles  of the mesh that is to be simplified over them.
+  /// \param loose            what lies between them; null: nothing.
   TileSamples(const HeightSource& heights, const Window& window, std::int64_t margin,
-              std::size_t input_triangles);
+              std::size_t input_triangles, const LooseSamples* loose = nullptr);
 
   const Window& window() const { return window_; }
 
@@ -40,6 +42,12 @@ class TileSamples {
   void for_each_patch(
       const std::function<void(std::size_t, const Window&, const HeightGrid&)>& visit) const;
 
+  bool has_loose() const { return loose_ != nullptr; }
+
+  /// The loose samples of a patch, and of \p margin cells around it; columns and rows count from
+  /// the tile's first sample.
+  std::vector<LooseSample> loose_in(const Window& patch, std::int64_t margin) const;
+
   /// Heights in metres of some samples of the tile.
   std::vector<double> heights_m(std::span<const hierarchy::SampleId> samples) const;
 
@@ -55,6 +63,7 @@ class TileSamples {
   HeightGrid read(const Window& patch) const;
 
   const HeightSource& heights_;
+  const LooseSamples* loose_;
   Window window_;
   std::int64_t margin_;
   std::int64_t block_cells_;

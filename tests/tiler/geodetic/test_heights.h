@@ -18,6 +18,8 @@ class FunctionHeights final : public GeodeticHeights {
   double min_height_m() const override { return min_m_; }
   double max_height_m() const override { return max_m_; }
 
+  std::vector<LooseSample> dem_samples(const Window&) const override { return {}; }
+
   HeightGrid read(int zoom, const Window& posts) const override {
     HeightGrid grid{posts, {}};
     for (std::int64_t row = posts.row; row < posts.row + posts.rows; ++row) {

@@ -59,6 +59,33 @@ TEST_F(TileWithASpike, ItIsMeasuredThoughItsTrianglesRoundedPlanLeavesItOut) {
   EXPECT_NEAR(measured(mesh, 0.01).max_m, 5, 0.01);
 }
 
+/// One height between the samples.
+class OneLoose final : public LooseSamples {
+ public:
+  std::vector<LooseSample> in(const Window& window) const override {
+    const double right = static_cast<double>(window.column + window.columns - 1);
+    if (kAt.column < static_cast<double>(window.column) || kAt.column > right) return {};
+    return {kAt};
+  }
+
+ private:
+  static constexpr LooseSample kAt{30.25, 31.5, 8};
+};
+
+TEST_F(MeasuredTile, MeasuresSamplesBetweenThoseOfTheGrid) {
+  MeasuredMesh mesh;
+  mesh.vertices = {vertex(0, 64, 1), vertex(64, 64, 1), vertex(64, 0, 1), vertex(0, 0, 1)};
+  const std::vector<hierarchy::Corners> triangles = {{0, 1, 2}, {0, 2, 3}};
+  mesh.triangles = triangles;
+  const OneLoose loose;
+  const TileSamples samples(dem_, {0, 0, 65, 65}, 0, 1, &loose);
+  const Measured measured = measure({&mesh, 1}, samples, frame_, 0.1, 5);
+  EXPECT_NEAR(measured.errors.front().max_m, 7, 0.01);
+  EXPECT_EQ(measured.errors.front().samples, 65 * 65 + 1);
+  ASSERT_EQ(measured.noted.size(), 1U);
+  EXPECT_EQ(measured.noted.front().column, 30.25F);
+}
+
 TEST_F(MeasuredTile, SampleBesideTheRimIsMeasuredAgainstItsNearestPoint) {
   const MeasuredMesh mesh{.vertices = {vertex(10, 20.009, 7), vertex(30, 20.009, 7),
                                        vertex(10, 20.001, 1), vertex(30, 20.001, 1)},
