@@ -13,6 +13,7 @@
 #include "ingest/scan.h"
 #include "tiler/files/whole_file.h"
 #include "tiler/verify/verify.h"
+#include "tiler/verify/verify_terrain.h"
 
 namespace terrane::cli {
 namespace {
@@ -34,12 +35,6 @@ void check_finished(const std::filesystem::path& out) {
 /// A tile set of another DEM would fail in a thousand places: say the one thing that is wrong.
 void check_same_dem(const std::filesystem::path& out, const ingest::Dem& dem, Progress& progress) {
   const auto summary = nlohmann::json::parse(tiler::read_whole_file(out / "terrane.json"));
-  if (summary.at("format") == "terrane-geodetic/1") {
-    throw InputError(fmt::format(
-        "{}: holds terrain of --scheme geodetic, which verify does not judge. Its errors are in "
-        "terrane.json: see terrane info",
-        out.string()));
-  }
   const auto built_from = summary.at("dem").at("fingerprint").get<std::string>();
   if (ingest::scan_heights(dem, progress).fingerprint == built_from) return;
   throw InputError(
@@ -49,27 +44,54 @@ void check_same_dem(const std::filesystem::path& out, const ingest::Dem& dem, Pr
                   out.string(), dem.name()));
 }
 
-verify::VerifyReport verify_folder(const std::filesystem::path& out, const VerifyCommand& command,
-                                   Progress& progress) {
+/// A report of either scheme.
+struct Verdict {
+  bool holds = false;
+  std::string text, json;
+};
+
+template <class Report>
+Verdict verdict_of(const Report& report) {
+  return {report.holds(), to_text(report), to_json(report)};
+}
+
+Verdict verify_folder(const std::filesystem::path& out, const VerifyCommand& command,
+                      Progress& progress) {
   check_finished(out);
   BuildSettings settings;
   read_settings(out / "build.toml", settings);
   if (!command.dem.empty()) settings.dem = command.dem;
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, progress);
-  read_features(settings, *dem, progress);
+  if (!settings.geodetic.is_geodetic()) read_features(settings, *dem, progress);
   check_same_dem(out, *dem, progress);
-  return verify::verify(out, dem->heights(), dem->place(), {.jobs = command.jobs}, progress);
+  const verify::VerifyOptions options{.jobs = command.jobs};
+  if (settings.geodetic.is_geodetic() && settings.geodetic.format != "quantized-mesh") {
+    throw InputError(
+        fmt::format("{}: holds {}, which verify does not read. The same meshes are written with "
+                    "--format quantized-mesh, which it judges",
+                    out.string(), settings.geodetic.format));
+  }
+  if (!settings.geodetic.is_geodetic()) {
+    return verdict_of(verify::verify(out, dem->heights(), dem->place(), options, progress));
+  }
+  NoProgress quietly;  // what was assumed was said by the build
+  const auto geoid = geoid_of(*dem, settings.geodetic, quietly);
+  const verify::Undulation undulation = [&](const LonLat& place) {
+    return geoid == nullptr ? 0 : geoid->undulation_m(place);
+  };
+  return verdict_of(
+      verify::verify_terrain(out, dem->heights(), dem->place(), undulation, options, progress));
 }
 
 void run(const VerifyCommand& command, const CommonOptions& common) {
   const auto progress = make_progress(common.quiet);
-  verify::VerifyReport report;
+  Verdict verdict;
   with_output_folder(command.out, *progress, [&](const std::filesystem::path& folder) {
-    report = verify_folder(folder, command, *progress);
+    verdict = verify_folder(folder, command, *progress);
   });
-  if (!command.json.empty()) tiler::write_whole_file(command.json, to_json(report));
-  fmt::print("{}", to_text(report));
-  if (!report.holds()) throw AnswerIsNo();
+  if (!command.json.empty()) tiler::write_whole_file(command.json, verdict.json);
+  fmt::print("{}", verdict.text);
+  if (!verdict.holds) throw AnswerIsNo();
 }
 
 }  // namespace

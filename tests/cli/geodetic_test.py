@@ -79,7 +79,7 @@ class Geodetic(unittest.TestCase):
             self.assertLessEqual(zoom["max_error_m"], zoom["tolerance_m"])
         status, printed, said = terrane("info", self.folder / "out")
         self.assertEqual(status, 0, said)
-        self.assertIn("finest posts", printed)
+        self.assertIn("DEM samples", printed)
 
     def test_says_what_it_assumed_of_the_heights(self):
         self.assertIn("--geoid egm96", self.build("assumed")[2])
@@ -104,11 +104,27 @@ class Geodetic(unittest.TestCase):
         self.refuse(USAGE, [*geodetic, "--tolerance", "0.001"], "--tolerance")
         self.refuse(INPUT, ["--scheme", "geodetic"], "CRS")
 
-    def test_verify_says_that_it_does_not_judge_it(self):
-        self.build("out")
-        status, _, said = terrane("--quiet", "verify", self.folder / "out")
-        self.assertEqual(status, INPUT)
-        self.assertIn("geodetic", said)
+    def test_the_tolerance_holds_at_the_dems_own_samples(self):
+        self.build("out", "--geoid", "egm96")
+        summary = json.loads((self.folder / "out/terrane.json").read_text())
+        self.assertEqual(summary["zooms"][-1]["held_to"], "DEM samples")
+        status, _, said = terrane("--quiet", "verify", self.folder / "out", "--json",
+                                  self.folder / "report.json")
+        self.assertEqual(status, 0, said)
+        report = json.loads((self.folder / "report.json").read_text())
+        self.assertTrue(report["holds"])
+        finest = report["zooms"][-1]
+        self.assertEqual(finest["samples"], 100 * 80 - 9 * 6)
+        self.assertLessEqual(finest["max_error_m"], 5)
+        self.assertGreater(finest["border_vertices"], 0)
+
+    def test_a_zoom_too_coarse_for_the_tolerance_is_said_and_held_to_posts(self):
+        status, _, said = self.build("out", "--max-zoom", "6")
+        self.assertEqual(status, 0, said)
+        self.assertIn("--max-zoom", said)
+        summary = json.loads((self.folder / "out/terrane.json").read_text())
+        self.assertEqual(summary["zooms"][-1]["held_to"], "finest posts")
+        self.assertGreater(summary["resampling"]["max_error_m"], 5)
 
 
 if __name__ == "__main__":

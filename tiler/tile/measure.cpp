@@ -346,9 +346,9 @@ Measured measure(std::span<const MeasuredMesh> meshes, const TileSamples& sample
     by_any.erase(std::unique(by_any.begin(), by_any.end()), by_any.end());
     const auto grid_samples = static_cast<std::size_t>(window.columns * window.rows);
     for (const std::size_t i : by_any) {
-      in_patch[k].noted.push_back(
-          i < grid_samples ? patch.sample(i)
-                           : field_sample(loose.samples()[i - grid_samples], frame));
+      in_patch[k].noted.push_back(i < grid_samples
+                                      ? patch.sample(i)
+                                      : field_sample(loose.samples()[i - grid_samples], frame));
     }
   });
   Measured all{std::vector<MeasuredError>(meshes.size())};
