@@ -181,7 +181,10 @@ void BoundsMeter::run() {
 
 }  // namespace
 
-void measure_bounds(MergeTree& tree) { BoundsMeter(tree).run(); }
+void measure_bounds(MergeTree& tree) {
+  BoundsMeter(tree).run();
+  tree.view_ranges = view_ranges_of(tree);
+}
 
 float rounded_up(double value) {
   auto nearest = static_cast<float>(value);

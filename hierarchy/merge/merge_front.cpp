@@ -46,13 +46,12 @@ void MergeFront::undo_one(std::uint32_t i) {
   for (const std::uint32_t f : tree_.finer(i)) {
     if (--coarser_made_[f] == 0) last_made_.add(f);
   }
-  if (morph_.is_on()) {
-    // what moved here is about to lose triangles to others: it has to be where it belongs
-    for (const std::uint32_t c : tree_.coarser(i)) morph_.finish(c, display_);
-  }
-  display_.split(i);
-  if (morph_.is_on()) morph_.open(i, display_);
   ++statistics_.splits;
+  if (!morph_.is_on()) return to_show_.push_back({i, true});
+  // what moved here is about to lose triangles to others: it has to be where it belongs
+  for (const std::uint32_t c : tree_.coarser(i)) morph_.finish(c, display_);
+  display_.split(i);
+  morph_.open(i, display_);
 }
 
 /// Undoes a merge, and before it those that were made on top of it.
@@ -87,8 +86,9 @@ void MergeFront::make(std::uint32_t i) {
       work_.push_back(c);
     }
   }
-  display_.merge(i);
   ++statistics_.merges;
+  if (!morph_.is_on()) return to_show_.push_back({i, false});
+  display_.merge(i);
 }
 
 /// Undoes every merge that may not be made, and those on top of it.
@@ -131,6 +131,19 @@ void MergeFront::make_in_time(std::uint32_t i, bool is_allowed) {
 }
 
 UpdateStatistics MergeFront::update(const ViewJudge& judge) {
+  decide(judge);
+  show();
+  return statistics_;
+}
+
+void MergeFront::show() {
+  for (const auto [merge, is_split] : to_show_) {
+    is_split ? display_.split(merge) : display_.merge(merge);
+  }
+  to_show_.clear();
+}
+
+UpdateStatistics MergeFront::decide(const ViewJudge& judge) {
   statistics_ = {};
   ++frame_;
   refine(judge);

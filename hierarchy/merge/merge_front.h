@@ -29,8 +29,11 @@ class MergeFront {
   explicit MergeFront(const MergeTree& tree, std::uint32_t morph_frames = 0);
 
   /// Goes from the last view's merges to this one's, along the border between those that are made
-  /// and those that are not.
+  /// and those that are not. The same as decide() and show().
   UpdateStatistics update(const ViewJudge& judge);
+  /// Walks the tree alone: display() stays as it is until show(). (With a geomorph, both at once.)
+  UpdateStatistics decide(const ViewJudge& judge);
+  void show();
 
   const DisplayMesh& display() const { return display_; }
   DisplayMesh& display() { return display_; }
@@ -61,6 +64,11 @@ class MergeFront {
   void make(std::uint32_t i);
   void make_in_time(std::uint32_t i, bool is_allowed);
 
+  struct Change {
+    std::uint32_t merge;
+    bool is_split;
+  };
+
   const MergeTree& tree_;
   DisplayMesh display_;
   Geomorph morph_;
@@ -72,6 +80,7 @@ class MergeFront {
   std::vector<std::uint32_t> seen_;           // frame in which a merge was looked at
   std::uint32_t frame_ = 0;
   std::vector<std::uint32_t> stack_, undo_stack_, work_;
+  std::vector<Change> to_show_;
   UpdateStatistics statistics_;
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hierarchy/levels/point_lattice.h"
+#include "hierarchy/merge/view_ranges.h"
 #include "hierarchy/mesh/halfedge_mesh.h"
 
 namespace terrane::hierarchy {
@@ -69,7 +70,8 @@ struct MergeTree {
   std::uint32_t coarsest_points = 0, coarsest_triangles = 0;
 
   std::vector<Merge> merges;
-  std::vector<MergeBounds> bounds;  ///< one for each merge
+  std::vector<MergeBounds> bounds;      ///< one for each merge
+  std::vector<ViewRanges> view_ranges;  ///< the same, as views read them: view_ranges_of()
   std::vector<std::uint32_t> coarse_triangles;
 
   std::vector<std::uint32_t> coarser_begin, coarser_merges;  ///< compressed rows: coarser()

@@ -210,6 +210,7 @@ class MergeReader {
     MergeTree tree = std::move(grower_).finish();
     tree.normals = std::move(normals_);
     tree.bounds = std::move(bounds_);
+    tree.view_ranges = view_ranges_of(tree);
     return tree;
   }
 

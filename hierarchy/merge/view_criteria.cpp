@@ -47,67 +47,85 @@ ViewJudge::ViewJudge(const MergeTree& tree, const Camera& camera, const ViewCrit
   needs_normals_ = criteria.back_faces || criteria.silhouette_px || criteria.highlight_px;
 }
 
-bool ViewJudge::may_be_in_view(const Eigen::Vector3d& to_centre, double radius) const {
-  const double depth = to_centre.dot(camera_.forward);
+bool ViewJudge::may_be_in_view(const Eigen::Vector3d& to_centre, double depth,
+                               double radius) const {
   if (depth + radius <= 0) return false;
   const double x = std::abs(to_centre.dot(camera_.right)), y = std::abs(to_centre.dot(up_));
   return x - depth * tan_x_ <= radius * side_x_ && y - depth * tan_y_ <= radius * side_y_;
 }
 
-double ViewJudge::pixels_per_unit(const Eigen::Vector3d& to_centre, double radius,
+double ViewJudge::pixels_per_unit(double distance, double depth, double radius,
                                   bool is_in_view) const {
-  const double distance = to_centre.norm();
   if (!is_in_view) {
     return distance > radius ? pixels_per_tangent_ / (distance - radius) : kInfinity;
   }
   // a step e from a point at distance r and depth z to one at depth z' moves the picture by
   // at most K e r / (z z'); in the picture r / z is that of its corners at most
-  const double depth = to_centre.dot(camera_.forward) - radius;
-  if (depth <= 0) return kInfinity;
-  const double secant = std::min((distance + radius) / depth, largest_secant_);
-  return pixels_per_tangent_ * secant / depth;
+  const double nearest = depth - radius;
+  if (nearest <= 0) return kInfinity;
+  const double secant = std::min((distance + radius) / nearest, largest_secant_);
+  return pixels_per_tangent_ * secant / nearest;
+}
+
+ViewJudge::Facing ViewJudge::facing(const Eigen::Vector3d& to_eye, double sin_eye_spread,
+                                    const Eigen::Vector3d& axis, const ViewRanges::Ranges& ranges) {
+  const double cos_off = to_eye.dot(axis);
+  // inside the sphere the eye may be in any direction
+  if (sin_eye_spread >= 1) return {cos_off, -1, 0};
+  // cosine and sine of the sum of both angles, which is below 3 pi / 2
+  const double cos_eye_spread = std::sqrt(1 - sin_eye_spread * sin_eye_spread);
+  return {cos_off, ranges.cos_angle * cos_eye_spread - ranges.sin_angle * sin_eye_spread,
+          ranges.sin_angle * cos_eye_spread + ranges.cos_angle * sin_eye_spread};
 }
 
 /// Largest less smallest brightness of (N . H)^s over a cone of normals.
-double ViewJudge::highlight_contrast(const Eigen::Vector3d& to_eye, double eye_spread,
-                                     const Eigen::Vector3d& axis, double angle) const {
+double ViewJudge::highlight_contrast(const Eigen::Vector3d& to_eye, double sin_eye_spread,
+                                     const Eigen::Vector3d& axis,
+                                     const ViewRanges::Ranges& ranges) const {
   const Eigen::Vector3d half = to_eye + criteria_.to_light;
   const double length = half.norm();
   if (length < 1e-6) return 1;
   // the half vector turns by no more than the direction to the eye does
-  const double off = std::acos(std::clamp(half.dot(axis) / length, -1.0, 1.0));
-  const double spread = angle + eye_spread;
-  const auto brightness = [&](double theta) {
-    return theta >= kPi / 2 ? 0 : std::pow(std::cos(theta), criteria_.shininess);
+  const Facing f = facing(half / length, sin_eye_spread, axis, ranges);
+  const double sin_off = std::sqrt(std::max(0.0, 1 - f.cos_off * f.cos_off));
+  const auto brightness = [&](double cosine) {
+    return cosine <= 0 ? 0 : std::pow(cosine, criteria_.shininess);
   };
-  return brightness(std::max(0.0, off - spread)) - brightness(off + spread);
+  const bool is_half_turn = f.cos_spread <= 0;  // the spread is a right angle or more
+  const bool reaches_middle = (is_half_turn && f.sin_spread <= 0) || f.cos_off >= f.cos_spread;
+  const double nearest =
+      reaches_middle ? 1 : brightness(f.cos_off * f.cos_spread + sin_off * f.sin_spread);
+  const double farthest =
+      is_half_turn ? 0 : brightness(f.cos_off * f.cos_spread - sin_off * f.sin_spread);
+  return nearest - farthest;
 }
 
-bool ViewJudge::allows(std::uint32_t centre, const Ranges& ranges) const {
-  const Eigen::Vector3d to_centre = tree_.place(centre).cast<double>() - camera_.eye;
-  const bool is_in_view = may_be_in_view(to_centre, ranges.radius);
+bool ViewJudge::allows(const ViewRanges& merge, const ViewRanges::Ranges& ranges) const {
+  const auto vector = [](const std::array<float, 3>& v) {
+    return Eigen::Vector3d(v[0], v[1], v[2]);
+  };
+  const Eigen::Vector3d to_centre = vector(merge.place) - camera_.eye;
+  const double depth = to_centre.dot(camera_.forward);
+  const bool is_in_view = may_be_in_view(to_centre, depth, ranges.radius);
   if (criteria_.frustum && !is_in_view) return true;
 
+  const double distance = to_centre.norm();
   double tolerance = criteria_.tolerance_px;
   bool has_highlight = false;
   if (needs_normals_) {
-    const double distance = to_centre.norm();
-    // inside the sphere the eye may be in any direction
-    const double eye_spread = distance > ranges.radius ? std::asin(ranges.radius / distance) : kPi;
-    const Eigen::Vector3d axis = tree_.normals[centre].cast<double>();
     const Eigen::Vector3d to_eye = -to_centre / std::max(distance, 1e-300);
-    const double off = std::acos(std::clamp(to_eye.dot(axis), -1.0, 1.0));
-    const double spread = ranges.angle + eye_spread;
-    if (criteria_.back_faces && off - spread > kPi / 2) return true;
-    const bool may_be_silhouette = off - spread <= kPi / 2 && off + spread >= kPi / 2;
-    if (criteria_.silhouette_px && may_be_silhouette) {
+    const double sin_eye_spread = distance > ranges.radius ? ranges.radius / distance : 1;
+    const Eigen::Vector3d axis = vector(merge.axis);
+    const Facing f = facing(to_eye, sin_eye_spread, axis, ranges);
+    if (criteria_.back_faces && f.turns_away()) return true;
+    if (criteria_.silhouette_px && f.may_be_silhouette()) {
       tolerance = std::min(tolerance, *criteria_.silhouette_px);
     }
     has_highlight =
         criteria_.highlight_px &&
-        highlight_contrast(to_eye, eye_spread, axis, ranges.angle) > criteria_.highlight_contrast;
+        highlight_contrast(to_eye, sin_eye_spread, axis, ranges) > criteria_.highlight_contrast;
   }
-  const double scale = pixels_per_unit(to_centre, ranges.radius, is_in_view) * kMargin;
+  const double scale = pixels_per_unit(distance, depth, ranges.radius, is_in_view) * kMargin;
   const auto shows = [&](double length, double limit) {
     return length > 0 && length * scale > limit;
   };
@@ -117,13 +135,13 @@ bool ViewJudge::allows(std::uint32_t centre, const Ranges& ranges) const {
 }
 
 bool ViewJudge::allows(std::uint32_t i) const {
-  const MergeBounds& b = tree_.bounds[i];
-  return allows(tree_.centre(i), {b.error, b.switched, b.radius, b.angle});
+  const ViewRanges& merge = tree_.view_ranges[i];
+  return allows(merge, merge.own);
 }
 
 bool ViewJudge::allows_all(std::uint32_t i) const {
-  const MergeBounds& b = tree_.bounds[i];
-  return allows(tree_.centre(i), {b.all_error, b.all_switched, b.all_radius, b.all_angle});
+  const ViewRanges& merge = tree_.view_ranges[i];
+  return allows(merge, merge.all);
 }
 
 }  // namespace terrane::hierarchy

@@ -63,15 +63,23 @@ class ViewJudge {
   bool allows_all(std::uint32_t i) const;
 
  private:
-  struct Ranges {
-    float error, switched, radius, angle;
+  /// How a cone of normals stands to the directions from which the eye may see a sphere: `off` is
+  /// between the middles of both, `spread` as much as both together stray from them.
+  struct Facing {
+    double cos_off, cos_spread, sin_spread;
+    bool turns_away() const { return cos_spread > 0 && cos_off < -sin_spread; }
+    bool may_be_silhouette() const {
+      return !turns_away() && (cos_spread <= 0 || cos_off <= sin_spread);
+    }
   };
-  bool allows(std::uint32_t centre, const Ranges& ranges) const;
+  bool allows(const ViewRanges& merge, const ViewRanges::Ranges& ranges) const;
+  static Facing facing(const Eigen::Vector3d& to_eye, double sin_eye_spread,
+                       const Eigen::Vector3d& axis, const ViewRanges::Ranges& ranges);
   /// Pixels that a unit of length takes at most in a sphere; infinite if the camera is inside.
-  double pixels_per_unit(const Eigen::Vector3d& to_centre, double radius, bool is_in_view) const;
-  bool may_be_in_view(const Eigen::Vector3d& to_centre, double radius) const;
-  double highlight_contrast(const Eigen::Vector3d& to_eye, double eye_spread,
-                            const Eigen::Vector3d& axis, double angle) const;
+  double pixels_per_unit(double distance, double depth, double radius, bool is_in_view) const;
+  bool may_be_in_view(const Eigen::Vector3d& to_centre, double depth, double radius) const;
+  double highlight_contrast(const Eigen::Vector3d& to_eye, double sin_eye_spread,
+                            const Eigen::Vector3d& axis, const ViewRanges::Ranges& ranges) const;
 
   const MergeTree& tree_;
   Camera camera_;

@@ -57,31 +57,66 @@ Camera orbit(const MergeTree& tree, double degrees) {
                             middle);
 }
 
-/// The tree shows about so many triangles; frames of steps of several sizes, a line each.
-void measure_frames(const MergeTree& tree, std::uint32_t triangles) {
+/// Milliseconds of many frames.
+class Times {
+ public:
+  void add(double seconds) { ms_.push_back(1e3 * seconds); }
+  /// \param share  0.5: the median
+  double at(double share) {
+    std::ranges::sort(ms_);
+    const auto last = static_cast<double>(ms_.size() - 1);
+    return ms_[static_cast<std::size_t>(std::lround(share * last))];
+  }
+
+ private:
+  std::vector<double> ms_;
+};
+
+/// Times the frames of a walk: finding what to show, and showing it.
+struct FrameTimes {
+  Times total, traversal;
+  double changes = 0, looked_at = 0, shown = 0;  // means
+
+  void frame(MergeFront& front, const ViewJudge& judge, int frames) {
+    front.display().forget_changes();
+    const double before = now();
+    const UpdateStatistics did = front.decide(judge);
+    const double decided = now();
+    front.show();
+    total.add(now() - before);
+    traversal.add(decided - before);
+    changes += static_cast<double>(did.splits + did.merges) / frames;
+    looked_at += static_cast<double>(did.looked_at) / frames;
+    shown += static_cast<double>(front.display().triangle_count()) / frames;
+  }
+};
+
+/// The coarsest tolerance at which a frame looks at so many merges: the length of the front.
+double tolerance_for_front(std::uint32_t merges, const MergeTree& tree, MergeFront& front) {
+  double tolerance_px = 1e4;
+  for (;; tolerance_px /= 1.02) {
+    const ViewJudge judge(tree, orbit(tree, 0), {.tolerance_px = tolerance_px});
+    front.update(judge);
+    if (front.update(judge).looked_at >= merges || tolerance_px < 1e-3) return tolerance_px;
+  }
+}
+
+/// Frames of steps of several sizes, a line each.
+void measure_frames(const MergeTree& tree, std::uint32_t looked_at) {
   MergeFront front(tree);
-  const double tolerance_px = settle_on(triangles, tree, orbit(tree, 0), {}, front);
+  const double tolerance_px = tolerance_for_front(looked_at, tree, front);
   for (const double step : {0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0}) {
-    std::vector<double> seconds;
-    double changes = 0, looked_at = 0, shown = 0;
-    constexpr int kFrames = 40;
+    constexpr int kFrames = 200;
+    FrameTimes times;
     double at = 0;
     front.update(ViewJudge(tree, orbit(tree, at), {.tolerance_px = tolerance_px}));
     for (int frame = 0; frame < kFrames; ++frame) {
-      front.display().forget_changes();
       at += step;
-      const ViewJudge judge(tree, orbit(tree, at), {.tolerance_px = tolerance_px});
-      const double before = now();
-      const UpdateStatistics did = front.update(judge);
-      seconds.push_back(now() - before);
-      changes += did.splits + did.merges;
-      looked_at += did.looked_at;
-      shown += front.display().triangle_count();
+      times.frame(front, {tree, orbit(tree, at), {.tolerance_px = tolerance_px}}, kFrames);
     }
-    std::ranges::sort(seconds);
-    std::printf("%u,%.0f,%.2f,%.1f,%.0f,%.4f,%.4f\n", tree.full_triangle_count(), shown / kFrames,
-                step, changes / kFrames, looked_at / kFrames, 1e3 * seconds[kFrames / 2],
-                1e3 * seconds.back());
+    std::printf("%u,%.0f,%.2f,%.1f,%.0f,%.4f,%.4f,%.4f,%.4f\n", tree.full_triangle_count(),
+                times.shown, step, times.changes, times.looked_at, times.total.at(0.5),
+                times.total.at(0.95), times.total.at(1), times.traversal.at(0.5));
     std::fflush(stdout);
   }
 }
@@ -96,11 +131,17 @@ void run() {
     std::printf("# %u, %.2f, %u levels, 3 log2 n = %.1f\n", side, now() - before,
                 trees.back().level_count(), 3 * std::log2(mesh.points.size()));
   }
-  std::printf("full_triangles,shown,step_deg,changes,looked_at,median_ms,largest_ms\n");
-  for (const MergeTree& tree : trees) measure_frames(tree, 6000);
+  std::printf(
+      "full_triangles,shown,step_deg,changes,looked_at,median_ms,p95_ms,largest_ms,traversal_ms\n");
+  // as many as the smallest one can have, and more
+  for (const std::uint32_t looked_at : {1500U, 6000U}) {
+    for (const MergeTree& tree : trees) {
+      if (looked_at < tree.merge_count() / 2) measure_frames(tree, looked_at);
+    }
+  }
 }
 
-/// A turn about a model, a degree a frame: medians and largest of 360 frames.
+/// A turn about a model, a degree a frame.
 void turn_about(const MergeTree& tree, std::uint32_t triangles) {
   Eigen::Vector3i low = tree.points.front(), high = low;
   for (const Eigen::Vector3i& p : tree.points) {
@@ -118,24 +159,17 @@ void turn_about(const MergeTree& tree, std::uint32_t triangles) {
   MergeFront front(tree);
   const double tolerance_px = settle_on(triangles, tree, camera(0), criteria, front);
   criteria = at_tolerance(criteria, tolerance_px);
-  std::vector<double> seconds, changes;
-  double shown = 0;
-  for (int frame = 1; frame <= 360; ++frame) {
-    front.display().forget_changes();
-    const ViewJudge judge(tree, camera(frame), criteria);
-    const double before = now();
-    const UpdateStatistics did = front.update(judge);
-    seconds.push_back(now() - before);
-    changes.push_back(did.splits + did.merges);
-    shown += front.display().triangle_count() / 360.0;
+  constexpr int kFrames = 360;
+  FrameTimes times;
+  for (int frame = 1; frame <= kFrames; ++frame) {
+    times.frame(front, {tree, camera(frame), criteria}, kFrames);
   }
-  std::ranges::sort(seconds);
-  std::ranges::sort(changes);
   std::printf(
-      "%u triangles, %u levels: %.2f px, %.0f shown, %.0f changes a frame, median %.3f ms, "
-      "largest %.3f ms\n",
-      tree.full_triangle_count(), tree.level_count(), tolerance_px, shown, changes[180],
-      1e3 * seconds[180], 1e3 * seconds.back());
+      "%u triangles, %u levels: %.2f px, %.0f shown, %.0f changes a frame, %.0f looked at; ms: "
+      "traversal median %.3f, update median %.3f, p95 %.3f, largest %.3f\n",
+      tree.full_triangle_count(), tree.level_count(), tolerance_px, times.shown, times.changes,
+      times.looked_at, times.traversal.at(0.5), times.total.at(0.5), times.total.at(0.95),
+      times.total.at(1));
 }
 
 }  // namespace
