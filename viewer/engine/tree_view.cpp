@@ -43,12 +43,12 @@ void TreeView::set_morph_frames(std::uint32_t frames) {
 }
 
 void TreeView::update() {
-  front_->display().forget_changes();
   shown_px_ = budget_ ? budget_->tolerance_px() : criteria_.tolerance_px;
   const auto criteria = budget_ ? hierarchy::at_tolerance(criteria_, shown_px_) : criteria_;
   statistics_ = front_->update(hierarchy::ViewJudge(*tree_, camera_, criteria));
   triangles_ = display().changed_triangles();
   vertices_ = display().changed_vertices();
+  front_->display().forget_changes();
   if (budget_) follow_budget();
 }
 

@@ -50,7 +50,7 @@ class TreeView {
   const hierarchy::UpdateStatistics& statistics() const { return statistics_; }
   /// Of the last update.
   double tolerance_px() const { return shown_px_; }
-  /// Written by the last update.
+  /// Written by the last update; by the first one (also after set_morph_frames()) all that shows.
   const std::vector<hierarchy::ChangedRange>& changed_triangles() const { return triangles_; }
   const std::vector<hierarchy::ChangedRange>& changed_vertices() const { return vertices_; }
 
