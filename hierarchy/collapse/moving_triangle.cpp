@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <experimental/simd>
+
+#include "hierarchy/collapse/lanes.h"
 
 namespace terrane::hierarchy {
 namespace {
@@ -13,14 +14,10 @@ constexpr int kMostSplits = 10;
 // of the largest coefficient: a triangle that becomes a line is 0 there but for rounding
 constexpr double kRounding = 1e-12;
 
-namespace stdx = std::experimental;
-constexpr std::int64_t kLanes = 4;
-using Lanes = stdx::simd<float, stdx::simd_abi::deduce_t<float, kLanes>>;
-
 // what single precision may be off by, as a share of the largest area times the largest height
 constexpr double kDoubt = 8e-6;
 
-// splits that four samples take together before each is looked at alone
+// splits that eight samples take together before each is looked at alone
 constexpr int kSplitsAtOnce = 3;
 
 using Quadratic = std::array<double, 3>;
@@ -33,11 +30,11 @@ Cubic elevated(const Quadratic& q) {
 
 /// The halves of a polynomial in Bernstein form (de Casteljau): the first one, and \p p the second.
 template <class Value, std::size_t N>
-std::array<Value, N> split(std::array<Value, N>& p) {
+TERRANE_LANES_INLINE std::array<Value, N> split(std::array<Value, N>& p) {
   std::array<Value, N> first;
   for (std::size_t left = N; left > 0; --left) {
     first[N - left] = p[0];
-    for (std::size_t i = 0; i + 1 < left; ++i) p[i] = (p[i] + p[i + 1]) * Value(0.5F);
+    for (std::size_t i = 0; i + 1 < left; ++i) p[i] = (p[i] + p[i + 1]) * 0.5F;
   }
   return first;
 }
@@ -144,7 +141,7 @@ int MovingTriangle::meeting_corners() const {
   return pairs == 0 ? 0 : pairs == 1 ? 2 : 3;
 }
 
-/// Goes through samples, four at once in single precision. What that cannot clear of all doubt is
+/// Goes through samples, eight at once in single precision. What that cannot clear of all doubt is
 /// judged one by one.
 class MovingTriangle::Sweep {
  public:
@@ -183,79 +180,94 @@ class MovingTriangle::Sweep {
   /// Part of a row of a field.
   bool operator()(const SampleField& field, std::int64_t row, std::int64_t first,
                   std::int64_t last) const {
-    const FieldPoint& origin = triangle_.from_[0];
-    const Lanes y = static_cast<float>(static_cast<double>(row) - origin.row);
     const double* heights = field.row(row);
-    for (std::int64_t column = first; column <= last; column += kLanes) {
-      const std::int64_t end = std::min(column + kLanes, last + 1);
-      const Lanes height_m([&](auto lane) {
-        const std::int64_t at = std::min(column + static_cast<std::int64_t>(lane), end - 1);
-        return static_cast<float>(heights[at] - origin.height_m);
-      });
-      const Lanes x([&](auto lane) {
-        const std::int64_t at = std::min(column + static_cast<std::int64_t>(lane), end - 1);
-        return static_cast<float>(static_cast<double>(at) - origin.column);
-      });
-      const Mask in_doubt = !are_cleared(x, y, height_m);
-      if (stdx::none_of(in_doubt)) continue;
-      for (std::int64_t at = column; at < end; ++at) {
-        if (!in_doubt[static_cast<std::size_t>(at - column)] || std::isnan(heights[at])) continue;
-        const FieldSample sample{static_cast<float>(at), static_cast<float>(row), heights[at]};
-        if (!triangle_.stays_within(sample, tolerance_m_)) return false;
-      }
-    }
-    return true;
+    return in_eights(static_cast<std::size_t>(last - first + 1), [&](std::size_t k) {
+      const std::int64_t at = first + static_cast<std::int64_t>(k);
+      return FieldSample{static_cast<float>(at), static_cast<float>(row), heights[at]};
+    });
   }
 
   /// Any samples that have heights.
   bool operator()(std::span<const FieldSample> samples) const {
-    const FieldPoint& origin = triangle_.from_[0];
-    for (std::size_t first = 0; first < samples.size(); first += kLanes) {
-      const auto four =
-          samples.subspan(first, std::min<std::size_t>(kLanes, samples.size() - first));
-      const auto at = [&](auto lane) -> const FieldSample& {
-        return four[std::min<std::size_t>(lane, four.size() - 1)];
-      };
-      const Lanes x([&](auto k) { return static_cast<float>(at(k).column - origin.column); });
-      const Lanes y([&](auto k) { return static_cast<float>(at(k).row - origin.row); });
-      const Lanes height_m(
-          [&](auto k) { return static_cast<float>(at(k).height_m - origin.height_m); });
-      const Mask in_doubt = !are_cleared(x, y, height_m);
-      if (stdx::none_of(in_doubt)) continue;
-      for (std::size_t k = 0; k < four.size(); ++k) {
-        if (in_doubt[k] && !triangle_.stays_within(four[k], tolerance_m_)) return false;
-      }
-    }
-    return true;
+    return in_eights(samples.size(), [&](std::size_t k) { return samples[k]; });
   }
 
  private:
-  using Mask = Lanes::mask_type;
-
-  /// What four samples are held against over some part of the time.
+  /// What samples are held against over some part of the time.
   struct Limits {
     std::array<float, 4> room;     // more off than that may be over the tolerance
     std::array<float, 3> outside;  // an area less than that is surely outside
   };
 
-  /// Four samples over some part of the time; all in Bernstein form.
+  /// Eight samples over some part of the time; all in Bernstein form.
   struct Passages {
     std::array<std::array<Lanes, 3>, 3> inside;
     std::array<Lanes, 4> off;
 
-    Mask are_outside(const Limits& limits) const {
-      Mask outside(false);
+    TERRANE_LANES_INLINE LaneMask are_outside(const Limits& limits) const {
+      LaneMask outside{};
       for (const std::array<Lanes, 3>& area : inside) {
-        outside = outside || (area[0] < limits.outside[0] && area[1] < limits.outside[1] &&
-                              area[2] < limits.outside[2]);
+        outside |= (area[0] < limits.outside[0]) & (area[1] < limits.outside[1]) &
+                   (area[2] < limits.outside[2]);
       }
       return outside;
     }
-    Mask have_room(const Limits& limits) const {
-      return stdx::abs(off[0]) <= limits.room[0] && stdx::abs(off[1]) <= limits.room[1] &&
-             stdx::abs(off[2]) <= limits.room[2] && stdx::abs(off[3]) <= limits.room[3];
+    TERRANE_LANES_INLINE LaneMask have_room(const Limits& limits) const {
+      LaneMask room = ~LaneMask{};
+      for (std::size_t i = 0; i < 4; ++i) room &= abs(off[i]) <= limits.room[i];
+      return room;
     }
   };
+
+  /// Eight samples, from from_[0].
+  struct Eight {
+    std::array<float, kLanes> x, y, height_m;
+  };
+
+  /// \param sample  gives the k-th sample.
+  template <class Sample>
+  bool in_eights(std::size_t count, const Sample& sample) const {
+    const FieldPoint& origin = triangle_.from_[0];
+    for (std::size_t first = 0; first < count; first += kLanes) {
+      const std::size_t end = std::min(first + kLanes, count);
+      Eight eight;
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const FieldSample& s = sample(std::min(first + k, end - 1));
+        eight.x[k] = static_cast<float>(s.column - origin.column);
+        eight.y[k] = static_cast<float>(s.row - origin.row);
+        eight.height_m[k] = static_cast<float>(s.height_m - origin.height_m);
+      }
+      const std::uint32_t in_doubt = doubts(eight);
+      for (std::size_t k = first; in_doubt != 0 && k < end; ++k) {
+        if ((in_doubt >> (k - first) & 1) == 0) continue;
+        const FieldSample& s = sample(k);
+        if (!std::isnan(s.height_m) && !triangle_.stays_within(s, tolerance_m_)) return false;
+      }
+    }
+    return true;
+  }
+
+  /// Which of them are not cleared: a bit for each.
+  struct Clearing {
+    const Sweep& sweep;
+    const Eight& eight;
+
+    TERRANE_LANES_INLINE std::uint32_t run() const {
+      const Lanes height_m = load(eight.height_m.data());
+      const Passages all = sweep.passages(load(eight.x.data()), load(eight.y.data()), height_m);
+      const LaneMask is_cleared =
+          (abs(height_m) <= sweep.highest_m_) & are_sound<kSplitsAtOnce>(all, sweep.limits_);
+      if (!any(~is_cleared)) return 0;
+      std::uint32_t in_doubt = 0;
+      for (std::size_t k = 0; k < kLanes; ++k) in_doubt |= (is_cleared[k] ? 0U : 1U) << k;
+      return in_doubt;
+    }
+  };
+
+  std::uint32_t doubts(const Eight& eight) const {
+    const Clearing clearing{*this, eight};
+    return has_wide_lanes() ? run_wide(clearing) : run_portable(clearing);
+  }
 
   /// Where corners meet at t = 1, areas and heights off are (1 - t) times something, or (1 - t)^2
   /// times if all do: so many of the last coefficients are 0, and there is nothing to doubt.
@@ -263,8 +275,9 @@ class MovingTriangle::Sweep {
     return meeting_ == 0 ? 0 : static_cast<std::size_t>(meeting_) - 1;
   }
 
-  Mask are_cleared(const Lanes& x, const Lanes& y, const Lanes& height_m) const {
-    Passages all{.inside = {}, .off = {0.0F, 0.0F, 0.0F, 0.0F}};
+  TERRANE_LANES_INLINE Passages passages(const Lanes& x, const Lanes& y,
+                                         const Lanes& height_m) const {
+    Passages all{};
     for (std::size_t k = 0; k < 3; ++k) {
       std::array<Lanes, 3>& area = all.inside[k];
       for (std::size_t i = 0; i < 3; ++i) {
@@ -277,20 +290,26 @@ class MovingTriangle::Sweep {
       all.off[2] += (2.0F * area[1] * last + area[2] * first) * kThird;
       all.off[3] += area[2] * last;
     }
-    for (std::size_t i = 4 - vanishing(); i < 4; ++i) all.off[i] = 0.0F;
-    return stdx::abs(height_m) <= highest_m_ && are_sound(all, limits_, kSplitsAtOnce);
+    for (std::size_t i = 4 - vanishing(); i < 4; ++i) all.off[i] = Lanes{};
+    return all;
   }
 
-  static Mask are_sound(const Passages& passages, const Limits& limits, int splits) {
-    const Mask sound = passages.have_room(limits) || passages.are_outside(limits);
-    if (splits == 0 || stdx::all_of(sound)) return sound;
-    Passages second = passages, first;
-    for (std::size_t k = 0; k < 3; ++k) first.inside[k] = split(second.inside[k]);
-    first.off = split(second.off);
-    Limits after = limits, before;
-    before.room = split(after.room);
-    before.outside = split(after.outside);
-    return sound || (are_sound(first, before, splits - 1) && are_sound(second, after, splits - 1));
+  template <int kSplits>
+  TERRANE_LANES_INLINE static LaneMask are_sound(const Passages& passages, const Limits& limits) {
+    LaneMask sound = passages.have_room(limits) | passages.are_outside(limits);
+    if constexpr (kSplits > 0) {
+      if (!any(~sound)) return sound;
+      Passages second = passages, first;
+      for (std::size_t k = 0; k < 3; ++k) first.inside[k] = split(second.inside[k]);
+      first.off = split(second.off);
+      Limits after = limits, before;
+      before.room = split(after.room);
+      before.outside = split(after.outside);
+      LaneMask halves = are_sound<kSplits - 1>(first, before);
+      if (any(halves & ~sound)) halves &= are_sound<kSplits - 1>(second, after);
+      sound |= halves;
+    }
+    return sound;
   }
 
   const MovingTriangle& triangle_;

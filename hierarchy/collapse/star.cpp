@@ -57,7 +57,7 @@ void Star::gather_polygon(const Stencil& stencil, const HalfedgeMesh& mesh,
     if (++i == count) i = 0;
   }
   const std::size_t last = sector_count_;
-  for (std::size_t k = last + 1; k <= last + kLanes; ++k) {
+  for (std::size_t k = last + 1; k <= last + kPadding; ++k) {
     corner_x_[k] = corner_x_[last];
     corner_y_[k] = corner_y_[last];
     corner_z_[k] = corner_z_[last];
@@ -65,8 +65,8 @@ void Star::gather_polygon(const Stencil& stencil, const HalfedgeMesh& mesh,
 }
 
 void Star::make_room_for_corners(std::size_t count) {
-  if (count + kLanes <= corner_x_.size()) return;
-  const std::size_t size = std::max<std::size_t>(64, 2 * (count + kLanes));
+  if (count + kPadding <= corner_x_.size()) return;
+  const std::size_t size = std::max<std::size_t>(64, 2 * (count + kPadding));
   corner_x_.resize(size);
   corner_y_.resize(size);
   corner_z_.resize(size);
@@ -82,7 +82,7 @@ Star::Centre Star::centre(GridPoint plan) const {
 
 void Star::pad_samples() {
   if (sample_count_ == 0) return;
-  for (std::size_t k = sample_count_; k % kLanes != 0; ++k) {
+  for (std::size_t k = sample_count_; k % kPadding != 0; ++k) {
     sample_x_[k] = sample_x_[sample_count_ - 1];
     sample_y_[k] = sample_y_[sample_count_ - 1];
     sample_z_[k] = sample_z_[sample_count_ - 1];
@@ -91,7 +91,7 @@ void Star::pad_samples() {
 
 void Star::add(std::span<const CoveredSample> samples) {
   const double column = column_of(origin_.plan), row = row_of(origin_.plan);
-  while (sample_count_ + samples.size() + kLanes > samples_.size()) make_room_for_samples();
+  while (sample_count_ + samples.size() + kPadding > samples_.size()) make_room_for_samples();
   // locals: as members, every store would reload them
   const double height_m = origin_.height_m;
   CoveredSample* copy = samples_.data() + sample_count_;

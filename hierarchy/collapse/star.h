@@ -52,7 +52,7 @@ class Star {
   std::size_t sample_count() const { return sample_count_; }
 
   /// Corners of the polygon: sector_count() + 1 of each; if closed, the last is the first again.
-  /// Padded with copies of the last to a multiple of kLanes, and one more.
+  /// Padded with copies of the last to a multiple of kPadding, and one more.
   const float* corner_x() const { return corner_x_.data(); }
   const float* corner_y() const { return corner_y_.data(); }
   const float* corner_z() const { return corner_z_.data(); }
@@ -64,7 +64,7 @@ class Star {
   /// The triangle that sector k will be.
   TriangleId triangle(std::size_t sector) const { return triangles_[sector]; }
 
-  /// The samples inside; padded with copies of the last to a multiple of kLanes.
+  /// The samples inside; padded with copies of the last to a multiple of kPadding.
   const float* sample_x() const { return sample_x_.data(); }
   const float* sample_y() const { return sample_y_.data(); }
   const float* sample_z() const { return sample_z_.data(); }
@@ -76,7 +76,7 @@ class Star {
   /// So many of them, the first ones, are keen.
   std::size_t keen_count() const { return keen_count_; }
 
-  static constexpr std::size_t kLanes = 4;
+  static constexpr std::size_t kPadding = 8;
 
  private:
   void gather_polygon(const Stencil& stencil, const HalfedgeMesh& mesh,

@@ -27,8 +27,12 @@ enum class StarVerdict : std::uint8_t {
 /// Judges the stars that may replace a stencil. Keeps its scratch space from call to call.
 class StarJudge {
  public:
+  StarJudge();
+  /// \param is_wide  whether to use has_wide_lanes() (lanes.h); the results are the same.
+  explicit StarJudge(bool is_wide) : is_wide_(is_wide) {}
+
   /// Finds the heights of a centre for which the star stays within the tolerance of every sample
-  /// under it: in single precision and four samples at once, so holds() has the last word.
+  /// under it: in single precision and eight samples at once, so holds() has the last word.
   ///
   /// \param smallest_altitude_cells  of any triangle of the star, in plan.
   /// \param[out] heights             written if feasible.
@@ -48,19 +52,28 @@ class StarJudge {
     return std::span(sectors_).first(star.sample_count());
   }
 
+  /// A sector around a written place.
+  struct ExactSector {
+    double from_x, from_y, to_x, to_y;  // of the corners, from the centre in grid units
+    double scale;                       // 1 / twice the area
+    double from_m, to_m;                // heights of the corners
+  };
+
  private:
-  /// The fours of samples that left no height to the last centre which had none. They are asked
+  /// The eights of samples that left no height to the last centre which had none. They are asked
   /// first about the next centre, as most have the same two to refuse them.
   struct Contrary {
     std::size_t count = 0;
-    std::array<std::size_t, 2> first{};  // samples that the fours begin with
+    std::array<std::size_t, 2> first{};  // samples that the eights begin with
   };
 
-  void remember_contrary(std::size_t last, float lowest, float highest);
+  struct Fit;
+  struct Guess;
 
-  std::vector<float> spokes_;  // see Spokes in the source
-  std::vector<float> bounds_;  // of the heights, sample by sample: lowest, highest by fours
+  bool is_wide_;
   Contrary contrary_;
+  std::vector<float> sectors_memory_, bounds_memory_;  // see Sectors and Bounds in the source
+  std::vector<ExactSector> exact_sectors_;
   std::vector<std::uint32_t> sectors_;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "hierarchy/collapse/lanes.h"
 #include "tests/hierarchy/test_meshes.h"
 
 namespace terrane::hierarchy {
@@ -29,10 +30,11 @@ GridPoint at(double column, double row) {
 ///      p5 ─ p6 ─ p7
 class Octagon {
  public:
-  explicit Octagon(const SampleField& field, double corner_height_m = 0)
+  explicit Octagon(const SampleField& field, double corner_height_m = 0, StarJudge judge = {})
       : vertices_(corners(corner_height_m)),
         mesh_(10, triangles()),
-        samples_(field, vertices_, triangles(), mesh_.triangle_count()) {
+        samples_(field, vertices_, triangles(), mesh_.triangle_count()),
+        judge_(std::move(judge)) {
     StencilWalker walker(mesh_);
     Stencil stencil;
     // triangle 8 is (a, p2, b): its last side is the edge b-a
@@ -49,6 +51,10 @@ class Octagon {
   }
   bool holds(GridPoint centre, double height_m, double tolerance_m) {
     return judge_.holds(star_, {centre, height_m, {}}, tolerance_m);
+  }
+  std::vector<std::uint32_t> sectors() const {
+    const auto of_star = judge_.sectors(star_);
+    return {of_star.begin(), of_star.end()};
   }
   const Place& corner(int k) const { return vertices_[k].place; }
 
@@ -179,6 +185,33 @@ TEST(StarJudge, AgreesWithEverySectorTriedOnRandomStars) {
     const double exact = worst_m(octagon, field, centre, best);
     EXPECT_TRUE(octagon.holds(centre, best, exact + 1e-9));
     EXPECT_FALSE(octagon.holds(centre, best, exact - 1e-9));
+  }
+  EXPECT_GT(feasible, 50);
+}
+
+TEST(StarJudge, SaysTheSameToTheBitWithWideLanesAndWithout) {
+  if (!has_wide_lanes()) GTEST_SKIP() << "this machine has no AVX2";
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> height(499, 501), place(0.5, 7.5);
+  int feasible = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const SampleField field = field_of(grid_of(9, 9, [&](auto, auto) { return height(random); }));
+    Octagon wide(field, 500, StarJudge(true)), portable(field, 500, StarJudge(false));
+    // places one after the other, as the second is first asked about what refused the first
+    for (int k = 0; k < 4; ++k) {
+      const GridPoint centre = at(place(random), place(random));
+      StarHeights by_wide, by_portable;
+      const StarVerdict verdict = portable.fit(centre, 1.4F, by_portable);
+      ASSERT_EQ(wide.fit(centre, 1.4F, by_wide), verdict);
+      if (verdict != StarVerdict::kFeasible) continue;
+      ++feasible;
+      EXPECT_EQ(by_wide.lowest, by_portable.lowest);
+      EXPECT_EQ(by_wide.highest, by_portable.highest);
+      EXPECT_EQ(by_wide.best, by_portable.best);
+      EXPECT_EQ(by_wide.squared_error, by_portable.squared_error);
+      ASSERT_TRUE(wide.holds(centre, 500, 100) && portable.holds(centre, 500, 100));
+      EXPECT_EQ(wide.sectors(), portable.sectors());
+    }
   }
   EXPECT_GT(feasible, 50);
 }
