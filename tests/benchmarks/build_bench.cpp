@@ -9,6 +9,7 @@
 #include "tiler/build_tile.h"
 #include "tiler/gltf/write_glb.h"
 #include "tiler/seams/build_seam.h"
+#include "tiler/simplify.h"
 
 namespace terrane {
 namespace {
@@ -123,6 +124,41 @@ void BM_EncodeTile(benchmark::State& state) {
   state.SetLabel("triangles");
 }
 BENCHMARK(BM_EncodeTile)->Unit(benchmark::kMillisecond);
+
+/// Samples in memory.
+class GridSource final : public HeightSource {
+ public:
+  explicit GridSource(HeightGrid grid) : grid_(std::move(grid)) {
+    grid_.window = {0, 0, grid_.window.columns, grid_.window.rows};
+  }
+  GridShape shape() const override { return {grid_.window.columns, grid_.window.rows}; }
+  HeightGrid read(const Window&) const override { return grid_; }
+
+ private:
+  HeightGrid grid_;
+};
+
+/// St. Helens without its rim: 290,088 triangles, the grid of docs/benchmarks.md's tables.
+Window without_rim(const GridShape& shape) {
+  return {5, 4, std::min<std::int64_t>(317, shape.columns - 5),
+          std::min<std::int64_t>(460, shape.rows - 4)};
+}
+
+// level 0 as one mesh, default effort: from samples in memory to a measured mesh in memory
+void BM_Simplify(benchmark::State& state) {
+  NoProgress progress;
+  const Dem dem;
+  const GridSource source(dem.opened->heights().read(without_rim(dem.shape)));
+  std::int64_t triangles = 0;
+  for (auto _ : state) {
+    const auto result = tiler::simplify(
+        source, {.tolerance_m = static_cast<double>(state.range(0)), .features = {}}, progress);
+    triangles = result.input_triangles;
+  }
+  state.SetItemsProcessed(state.iterations() * triangles);
+  state.SetLabel("input triangles");
+}
+BENCHMARK(BM_Simplify)->Arg(1)->Arg(5)->Arg(20)->Unit(benchmark::kMillisecond);
 
 // everything, to files, on one core
 void BM_BuildAllLevels(benchmark::State& state) {

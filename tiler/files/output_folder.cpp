@@ -56,7 +56,10 @@ fs::path OutputFolder::finished_tile(const TileId& tile) const {
 }
 
 fs::path OutputFolder::finished_seam(const SeamId& seam) const {
-  return work() / "seams" / (path_of(seam) + ".seam");
+  // all seams of a column of tiles in one folder: folders cost more than files
+  std::string name = path_of(seam) + ".seam";
+  name[name.rfind('/')] = '-';
+  return work() / "seams" / name;
 }
 
 void OutputFolder::forget_seams(int level) const {
