@@ -181,15 +181,14 @@ class MovingTriangle::Sweep {
   bool operator()(const SampleField& field, std::int64_t row, std::int64_t first,
                   std::int64_t last) const {
     const double* heights = field.row(row);
-    return in_eights(static_cast<std::size_t>(last - first + 1), [&](std::size_t k) {
-      const std::int64_t at = first + static_cast<std::int64_t>(k);
-      return FieldSample{static_cast<float>(at), static_cast<float>(row), heights[at]};
-    });
+    return in_eights(RowSamples{heights + first, static_cast<double>(first),
+                                static_cast<double>(row), triangle_.from_[0],
+                                static_cast<std::size_t>(last - first + 1)});
   }
 
   /// Any samples that have heights.
   bool operator()(std::span<const FieldSample> samples) const {
-    return in_eights(samples.size(), [&](std::size_t k) { return samples[k]; });
+    return in_eights(KeptSamples{samples, triangle_.from_[0]});
   }
 
  private:
@@ -219,54 +218,104 @@ class MovingTriangle::Sweep {
     }
   };
 
-  /// Eight samples, from from_[0].
+  /// Eight samples, counted from a corner.
   struct Eight {
-    std::array<float, kLanes> x, y, height_m;
+    Lanes x, y, height_m;
   };
 
-  /// \param sample  gives the k-th sample.
-  template <class Sample>
-  bool in_eights(std::size_t count, const Sample& sample) const {
-    const FieldPoint& origin = triangle_.from_[0];
-    for (std::size_t first = 0; first < count; first += kLanes) {
-      const std::size_t end = std::min(first + kLanes, count);
-      Eight eight;
-      for (std::size_t k = 0; k < kLanes; ++k) {
-        const FieldSample& s = sample(std::min(first + k, end - 1));
-        eight.x[k] = static_cast<float>(s.column - origin.column);
-        eight.y[k] = static_cast<float>(s.row - origin.row);
-        eight.height_m[k] = static_cast<float>(s.height_m - origin.height_m);
+  /// Samples of a row.
+  struct RowSamples {
+    const double* heights_m;
+    double first_column, row;
+    const FieldPoint& origin;
+    std::size_t count;
+
+    FieldSample operator[](std::size_t k) const {
+      return {static_cast<float>(first_column + static_cast<double>(k)), static_cast<float>(row),
+              heights_m[k]};
+    }
+    TERRANE_LANES_INLINE Eight eight(std::size_t first) const {
+      Eight eight{};
+      const auto x = static_cast<float>(first_column - origin.column + static_cast<double>(first));
+      eight.x = x + lane_numbers();
+      eight.y = all_lanes(static_cast<float>(row - origin.row));
+      const double* from = heights_m + first;
+      if (first + kLanes <= count) {
+        for (std::size_t k = 0; k < kLanes; ++k) {
+          eight.height_m[k] = static_cast<float>(from[k] - origin.height_m);
+        }
+        return eight;
       }
-      const std::uint32_t in_doubt = doubts(eight);
-      for (std::size_t k = first; in_doubt != 0 && k < end; ++k) {
-        if ((in_doubt >> (k - first) & 1) == 0) continue;
-        const FieldSample& s = sample(k);
-        if (!std::isnan(s.height_m) && !triangle_.stays_within(s, tolerance_m_)) return false;
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const std::size_t at = std::min(k, count - first - 1);
+        eight.height_m[k] = static_cast<float>(from[at] - origin.height_m);
+      }
+      const auto last = static_cast<float>(count - first - 1);
+      eight.x = min(eight.x, all_lanes(x + last));
+      return eight;
+    }
+  };
+
+  /// Samples of a reduced field.
+  struct KeptSamples {
+    std::span<const FieldSample> samples;
+    const FieldPoint& origin;
+    std::size_t count = samples.size();
+
+    FieldSample operator[](std::size_t k) const { return samples[k]; }
+    TERRANE_LANES_INLINE Eight eight(std::size_t first) const {
+      Eight eight{};
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const FieldSample& sample = samples[std::min(first + k, count - 1)];
+        eight.x[k] = static_cast<float>(sample.column - origin.column);
+        eight.y[k] = static_cast<float>(sample.row - origin.row);
+        eight.height_m[k] = static_cast<float>(sample.height_m - origin.height_m);
+      }
+      return eight;
+    }
+  };
+
+  /// The first eight samples, from some on, that are not all cleared.
+  struct Doubt {
+    std::size_t first;
+    std::uint32_t samples;  // a bit for each of them that is not
+  };
+
+  template <class Samples>
+  struct Clearing {
+    const Sweep& sweep;
+    const Samples& samples;
+    std::size_t begin;
+
+    TERRANE_LANES_INLINE Doubt run() const {
+      for (std::size_t first = begin; first < samples.count; first += kLanes) {
+        const Eight eight = samples.eight(first);
+        const LaneMask is_cleared = (abs(eight.height_m) <= sweep.highest_m_) &
+                                    are_sound<kSplitsAtOnce>(sweep.passages(eight), sweep.limits_);
+        if (!any(~is_cleared)) continue;
+        Doubt doubt{first, 0};
+        for (std::size_t k = 0; k < kLanes; ++k) doubt.samples |= (is_cleared[k] ? 0U : 1U) << k;
+        return doubt;
+      }
+      return {samples.count, 0};
+    }
+  };
+
+  template <class Samples>
+  bool in_eights(const Samples& samples) const {
+    for (std::size_t begin = 0; begin < samples.count; begin += kLanes) {
+      const Clearing<Samples> clearing{*this, samples, begin};
+      const Doubt doubt = has_wide_lanes() ? run_wide(clearing) : run_portable(clearing);
+      begin = doubt.first;
+      for (std::size_t k = 0; k < kLanes && begin + k < samples.count; ++k) {
+        if ((doubt.samples >> k & 1) == 0) continue;
+        const FieldSample sample = samples[begin + k];
+        if (!std::isnan(sample.height_m) && !triangle_.stays_within(sample, tolerance_m_)) {
+          return false;
+        }
       }
     }
     return true;
-  }
-
-  /// Which of them are not cleared: a bit for each.
-  struct Clearing {
-    const Sweep& sweep;
-    const Eight& eight;
-
-    TERRANE_LANES_INLINE std::uint32_t run() const {
-      const Lanes height_m = load(eight.height_m.data());
-      const Passages all = sweep.passages(load(eight.x.data()), load(eight.y.data()), height_m);
-      const LaneMask is_cleared =
-          (abs(height_m) <= sweep.highest_m_) & are_sound<kSplitsAtOnce>(all, sweep.limits_);
-      if (!any(~is_cleared)) return 0;
-      std::uint32_t in_doubt = 0;
-      for (std::size_t k = 0; k < kLanes; ++k) in_doubt |= (is_cleared[k] ? 0U : 1U) << k;
-      return in_doubt;
-    }
-  };
-
-  std::uint32_t doubts(const Eight& eight) const {
-    const Clearing clearing{*this, eight};
-    return has_wide_lanes() ? run_wide(clearing) : run_portable(clearing);
   }
 
   /// Where corners meet at t = 1, areas and heights off are (1 - t) times something, or (1 - t)^2
@@ -275,15 +324,14 @@ class MovingTriangle::Sweep {
     return meeting_ == 0 ? 0 : static_cast<std::size_t>(meeting_) - 1;
   }
 
-  TERRANE_LANES_INLINE Passages passages(const Lanes& x, const Lanes& y,
-                                         const Lanes& height_m) const {
+  TERRANE_LANES_INLINE Passages passages(const Eight& eight) const {
     Passages all{};
     for (std::size_t k = 0; k < 3; ++k) {
       std::array<Lanes, 3>& area = all.inside[k];
       for (std::size_t i = 0; i < 3; ++i) {
-        area[i] = constant_[k][i] + y * per_row_[k][i] + x * per_column_[k][i];
+        area[i] = constant_[k][i] + eight.y * per_row_[k][i] + eight.x * per_column_[k][i];
       }
-      const Lanes first = first_m_[k] - height_m, last = last_m_[k] - height_m;
+      const Lanes first = first_m_[k] - eight.height_m, last = last_m_[k] - eight.height_m;
       constexpr float kThird = 1.0F / 3;
       all.off[0] += area[0] * first;
       all.off[1] += (area[0] * last + 2.0F * area[1] * first) * kThird;

@@ -40,7 +40,7 @@ Collapsibility StencilWalker::around_triangle(TriangleId triangle, Stencil& sten
     }
   }
   for (std::uint32_t k = 0; k < 3; ++k) {
-    walk(stencil.dying[k], HalfedgeMesh::triangle(stencil.dying[(k + 1) % 3]), stencil);
+    walk(stencil.dying[k], HalfedgeMesh::next(stencil.dying[(k + 1) % 3]), stencil);
   }
   return is_simple(stencil) ? Collapsibility::kYes : Collapsibility::kCyclic;
 }
@@ -55,8 +55,8 @@ Collapsibility StencilWalker::around_edge(HalfedgeId edge, Stencil& stencil) {
   for (const HalfedgeId h : stencil.dying_span()) {
     if (mesh_.valence(mesh_.apex(h)) < kSmallestApexValenceOfEdge) return Collapsibility::kValence;
   }
-  walk(back, HalfedgeMesh::triangle(edge), stencil);
-  walk(edge, HalfedgeMesh::triangle(back), stencil);
+  walk(back, HalfedgeMesh::next(edge), stencil);
+  walk(edge, HalfedgeMesh::next(back), stencil);
   return stencil.polygon.size() >= 3 && is_simple(stencil) ? Collapsibility::kYes
                                                            : Collapsibility::kCyclic;
 }
@@ -75,10 +75,11 @@ void StencilWalker::around_vertex(VertexId vertex, Stencil& stencil) const {
   } while (spoke != first);
 }
 
-/// Counter-clockwise about start(from_dying), from the dying triangle to the dying triangle `to`.
-void StencilWalker::walk(HalfedgeId from_dying, TriangleId to, Stencil& stencil) const {
+/// Counter-clockwise about start(from_dying), from one dying triangle to the other, which to_dying
+/// is in.
+void StencilWalker::walk(HalfedgeId from_dying, HalfedgeId to_dying, Stencil& stencil) const {
   HalfedgeId spoke = mesh_.rotate(from_dying);
-  while (HalfedgeMesh::triangle(spoke) != to) {
+  while (spoke != to_dying) {
     stencil.spokes.push_back(spoke);
     stencil.polygon.push_back(mesh_.end(spoke));
     spoke = mesh_.rotate(spoke);

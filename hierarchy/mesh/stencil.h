@@ -62,7 +62,7 @@ class StencilWalker {
   void around_vertex(VertexId vertex, Stencil& stencil) const;
 
  private:
-  void walk(HalfedgeId from_dying, TriangleId to, Stencil& stencil) const;
+  void walk(HalfedgeId from_dying, HalfedgeId to_dying, Stencil& stencil) const;
   bool is_simple(const Stencil& stencil);
   bool leaves_enough_edges(const Stencil& stencil) const;
 

@@ -152,11 +152,55 @@ class LoosePatch {
   std::vector<std::size_t> first_;
 };
 
+/// How much the map of a tile bends in plan: a line that is straight over the grid lies beside the
+/// straight one in the world by an eighth of its length squared times the second derivative.
+class Bend {
+ public:
+  Bend(const TileFrame& frame, const Window& tile) {
+    const auto columns = static_cast<double>(tile.columns - 1);
+    const auto rows = static_cast<double>(tile.rows - 1);
+    const double u = std::max(1.0, columns / kProbes), v = std::max(1.0, rows / kProbes);
+    for (int j = 1; j < kProbes; ++j) {
+      for (int i = 1; i < kProbes; ++i) add(frame, columns * i / kProbes, rows * j / kProbes, u, v);
+    }
+  }
+
+  /// The most that an edge of so many columns and rows may lie beside, in cells.
+  double cells(double columns, double rows) const {
+    constexpr double kToBeSure = 2;
+    return kToBeSure / 8 *
+           (columns_ * columns * columns + 2 * both_ * std::abs(columns * rows) +
+            rows_ * rows * rows);
+  }
+
+ private:
+  static constexpr int kProbes = 6;
+
+  void add(const TileFrame& frame, double column, double row, double u, double v) {
+    const Eigen::Vector3d up = frame.plumb(column, row).up;
+    const auto base = [&](double i, double j) {
+      return frame.plumb(column + i * u, row + j * v).base;
+    };
+    const auto flat_cells = [&](const Eigen::Vector3d& bend) {
+      return (bend - bend.dot(up) * up).norm() / frame.spacing_m();
+    };
+    const Eigen::Vector3d here = base(0, 0);
+    columns_ = std::max(columns_, flat_cells(base(1, 0) + base(-1, 0) - 2 * here) / (u * u));
+    rows_ = std::max(rows_, flat_cells(base(0, 1) + base(0, -1) - 2 * here) / (v * v));
+    both_ = std::max(
+        both_, flat_cells(base(1, 1) + base(-1, -1) - base(1, -1) - base(-1, 1)) / (4 * u * v));
+  }
+
+  double columns_ = 0, both_ = 0, rows_ = 0;  // largest second derivatives, 1 / cell
+};
+
 /// The errors of one mesh at the samples of one patch.
 class Measurement {
  public:
-  Measurement(const TileFrame& frame, double step_m, const Patch& patch, const LoosePatch& loose)
+  Measurement(const TileFrame& frame, const Bend& bend, double step_m, const Patch& patch,
+              const LoosePatch& loose)
       : frame_(frame),
+        bend_(bend),
         step_m_(step_m),
         patch_(patch),
         loose_(loose),
@@ -261,18 +305,9 @@ class Measurement {
     return worst_m_[static_cast<std::size_t>(row * shape_.columns + column)];
   }
 
-  /// How far the straight edge in the world lies beside the straight line over the grid, about.
+  /// How far the straight edge in the world may lie beside the straight line over the grid.
   double bend_cells(const WorldVertex& a, const WorldVertex& b) const {
-    const FieldPoint from = a.plan, to = b.plan;
-    const auto base = [&](double t) -> Eigen::Vector3d {
-      return frame_
-          .plumb(from.column + t * (to.column - from.column), from.row + t * (to.row - from.row))
-          .base;
-    };
-    const Plumb middle = frame_.plumb((from.column + to.column) / 2, (from.row + to.row) / 2);
-    const Eigen::Vector3d gap = middle.base - (base(0) + base(1)) / 2;
-    constexpr double kToBeSure = 2;
-    return kToBeSure * (gap - gap.dot(middle.up) * middle.up).norm() / frame_.spacing_m();
+    return bend_.cells(b.plan.column - a.plan.column, b.plan.row - a.plan.row);
   }
 
   /// A sample on an edge is under two triangles: the worse one stays, and it counts once.
@@ -303,6 +338,7 @@ class Measurement {
   }
 
   const TileFrame& frame_;
+  const Bend& bend_;
   double step_m_;
   const Patch& patch_;
   const LoosePatch& loose_;
@@ -312,8 +348,8 @@ class Measurement {
 };
 
 Measurement measured(const MeasuredMesh& mesh, const Patch& patch, const LoosePatch& loose,
-                     const TileFrame& frame, double step_m) {
-  Measurement measurement(frame, step_m, patch, loose);
+                     const TileFrame& frame, const Bend& bend, double step_m) {
+  Measurement measurement(frame, bend, step_m, patch, loose);
   for (const auto& [a, b, c] : mesh.triangles) {
     measurement.add_triangle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
   }
@@ -327,6 +363,7 @@ Measured measure(std::span<const MeasuredMesh> meshes, const TileSamples& sample
                  const TileFrame& frame, double step_m, double noted_m) {
   // by patch, and put together in their order: the result then does not depend on the threads
   std::vector<Measured> in_patch(samples.patch_count());
+  const Bend bend(frame, samples.window());
   samples.for_each_patch([&](std::size_t k, const Window& window, const HeightGrid& grid) {
     const Patch patch(frame, samples.window(), window, grid);
     const LoosePatch loose(frame, samples, window);
@@ -335,7 +372,7 @@ Measured measure(std::span<const MeasuredMesh> meshes, const TileSamples& sample
     // isolated: else a thread that waits here may begin another tile and hold both in memory
     tbb::this_task_arena::isolate([&] {
       tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t m) {
-        const Measurement measurement = measured(meshes[m], patch, loose, frame, step_m);
+        const Measurement measurement = measured(meshes[m], patch, loose, frame, bend, step_m);
         in_patch[k].errors[m] = measurement.result();
         noted[m] = measurement.farther_than(noted_m);
       });
