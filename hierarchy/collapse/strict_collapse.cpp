@@ -19,14 +19,15 @@ constexpr float kIntervalMargin = 0.2F;
 // triangles in a row: with their samples they fit a second-level cache
 constexpr std::uint32_t kBlock = 8192;
 
-// by effort
+// by effort, at level 0 and above
 constexpr int kPolishRounds[] = {0, 0, 3, 40};
+constexpr int kPolishRoundsAbove[] = {0, 0, 2, 8};
 
 // how far vertices try to go to each neighbour, round by round: 1/4, 1/2, 1/8, 1/16 of the way
 constexpr std::int32_t kPartsOfWay[] = {4, 2, 8, 16};
 
-// how far from an edge's midpoint polish looks for more places: 1/4 of the way to each neighbour
-constexpr std::int32_t kPartsBesideEdge = 4;
+// how far from its middle a core looks for more places: 1/4 of the way to each neighbour
+constexpr std::int32_t kPartsBesideMiddle = 4;
 
 // a sweep that collapses less than one in this many triangles is the last
 constexpr std::int64_t kTooFew = 500;
@@ -61,6 +62,7 @@ class StrictCollapse {
         smallest_altitude_cells_(static_cast<float>(options.smallest_altitude_cells)),
         samples_(field, vertices_, mesh_.triangles(), mesh_.triangle_count()),
         changed_(vertices_.size(), 0),
+        disturbed_(vertices_.size(), 0),
         tested_(mesh_.triangle_count() * 3, 0) {
     for (std::uint32_t v = 0; v < vertices_.size(); ++v) {
       if (mesh_.is_split(VertexId{v})) vertices_[v].kind = VertexKind::kLocked;
@@ -79,12 +81,13 @@ class StrictCollapse {
   }
 
   StrictResult run(std::size_t given_vertices) {
-    // triangles leave slack for the edges, which come last
-    tolerance_m_ = kTriangleShare * options_.tolerance_m;
+    // triangles leave slack for the edges, which come last; above level 0 the blend leaves enough
+    tolerance_m_ = (guard_ ? 1 : kTriangleShare) * options_.tolerance_m;
+    tries_more_places_ = guard_ && options_.effort > 0;
     sweep([this](std::uint32_t triangle) { return sweep_triangle(TriangleId{triangle}); });
     tolerance_m_ = options_.tolerance_m;
     if (options_.effort > 0 || guard_) collapse_edges();
-    if (!guard_) polish(kPolishRounds[options_.effort]);
+    polish((guard_ ? kPolishRoundsAbove : kPolishRounds)[options_.effort]);
     return finish(given_vertices);
   }
 
@@ -107,16 +110,22 @@ class StrictCollapse {
 
   /// Makes room under the tolerance and collapses what it then allows, again and again.
   void polish(int rounds) {
-    is_polishing_ = true;
+    tries_more_places_ = true;
     int idle_rounds = 0;
     for (int round = 0; round < rounds && idle_rounds < std::ssize(kPartsOfWay); ++round) {
-      for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) flip_edges(TriangleId{t});
+      flip_edges();
       for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v) {
         move(VertexId{v}, kPartsOfWay[round % std::ssize(kPartsOfWay)]);
       }
-      for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) flip_edges(TriangleId{t});
+      flip_edges();
       idle_rounds = collapse_edges() == 0 ? idle_rounds + 1 : 0;
     }
+  }
+
+  /// A finer level can blend into a mesh of other places, but not of other edges.
+  void flip_edges() {
+    if (guard_) return;
+    for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) flip_edges(TriangleId{t});
   }
 
   void flip_edges(TriangleId t) {
@@ -191,11 +200,9 @@ class StrictCollapse {
   }
 
   std::int64_t sweep_triangle(TriangleId t) {
-    std::uint32_t newest = 0;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      newest = std::max(newest, changed_[index(mesh_.start(HalfedgeMesh::halfedge(t, k)))]);
-    }
-    if (!is_due(tested_[index(t)], newest)) return 0;
+    const HalfedgeId h = HalfedgeMesh::halfedge(t, 0);
+    const VertexId core[] = {mesh_.start(h), mesh_.end(h), mesh_.apex(h)};
+    if (!is_due(tested_[index(t)], core)) return 0;
     return count(try_collapse(walker_.around_triangle(t, stencil_)), result_.triangle_collapses);
   }
 
@@ -206,17 +213,20 @@ class StrictCollapse {
       const TriangleId across = HalfedgeMesh::triangle(mesh_.opposite(h));
       // each edge once, from the side with the smaller id; ghosts have the largest
       if (across < t) continue;
-      const std::uint32_t newest =
-          std::max(changed_[index(mesh_.start(h))], changed_[index(mesh_.end(h))]);
-      if (!is_due(tested_[index(h)], newest)) continue;
+      const VertexId core[] = {mesh_.start(h), mesh_.end(h)};
+      if (!is_due(tested_[index(h)], core)) continue;
       done += count(try_collapse(walker_.around_edge(h, stencil_)), result_.edge_collapses);
     }
     return done;
   }
 
   /// Not yet tried since its corners changed, and not next to a collapse of this sweep.
-  bool is_due(std::uint32_t& tested, std::uint32_t newest_change) const {
-    if (newest_change == sweep_) return false;
+  bool is_due(std::uint32_t& tested, std::span<const VertexId> core) const {
+    std::uint32_t newest_change = 0;
+    for (const VertexId v : core) {
+      if (disturbed_[index(v)] == sweep_) return false;
+      newest_change = std::max(newest_change, changed_[index(v)]);
+    }
     if (tested > newest_change) return false;
     tested = sweep_;
     return true;
@@ -238,7 +248,6 @@ class StrictCollapse {
     }
     const auto best = best_place(boundary);
     if (!best) return refusal_;
-    if (guard_ && !guard_->allows(stencil_.core_span(), *best)) return Collapsibility::kMorph;
     commit(*best, boundary.onto.value_or(stencil_.core[0]));
     return Collapsibility::kYes;
   }
@@ -267,20 +276,20 @@ class StrictCollapse {
     const std::int64_t n = stencil_.core_size;
     candidates_.push_back({{static_cast<std::int32_t>(x / n), static_cast<std::int32_t>(y / n)},
                            height_m / static_cast<double>(n)});
-    if (is_polishing_) list_more_candidates(candidates_.back());
+    if (tries_more_places_) list_more_candidates(candidates_.back());
   }
 
-  /// The quarter points of an edge, and places around its midpoint.
-  void list_more_candidates(Candidate midpoint) {
+  /// Halfway from the middle to two corners, and places around it.
+  void list_more_candidates(Candidate middle) {
     for (std::size_t end = 0; end < 2; ++end) {
       const Candidate there = candidates_[end];
       candidates_.push_back(
-          {part_of_way(midpoint.plan, there.plan, 2), (midpoint.height_m + there.height_m) / 2});
+          {part_of_way(middle.plan, there.plan, 2), (middle.height_m + there.height_m) / 2});
     }
     for (const VertexId to : stencil_.polygon) {
       const GridPoint there = vertices_[index(to)].place.plan;
       candidates_.push_back(
-          {part_of_way(midpoint.plan, there, kPartsBesideEdge), midpoint.height_m});
+          {part_of_way(middle.plan, there, kPartsBesideMiddle), middle.height_m});
     }
   }
 
@@ -337,8 +346,15 @@ class StrictCollapse {
     StarHeights heights;
     if (!fit(place.plan, heights) || !is_star_shaped(place.plan)) return std::nullopt;
     refusal_ = Collapsibility::kOverTolerance;
-    if (!judge_.holds(star_, place, tolerance_m_)) return std::nullopt;
+    if (!judge_.holds(star_, place, tolerance_m_) || !blends(place)) return std::nullopt;
     return place;
+  }
+
+  /// Can the finer level's vertices that are in the core go to this place?
+  bool blends(const Place& place) {
+    if (!guard_ || guard_->allows(stencil_.core_span(), place)) return true;
+    refusal_ = Collapsibility::kMorph;
+    return false;
   }
 
   bool fit(GridPoint plan, StarHeights& heights) {
@@ -365,7 +381,7 @@ class StrictCollapse {
                                                  : placer_.over_datum_m(candidate.plan, water_m_);
     const Place place = placer_.place(candidate.plan, height_m);
     if (!is_star_shaped(place.plan)) return std::nullopt;
-    if (!judge_.holds(star_, place, tolerance_m_)) return std::nullopt;
+    if (!judge_.holds(star_, place, tolerance_m_) || !blends(place)) return std::nullopt;
     return place;
   }
 
@@ -401,9 +417,12 @@ class StrictCollapse {
     hand_over_samples();
     mesh_.collapse(stencil_.spokes, stencil_.dying_span(), kept);
     vertices_[index(kept)].place = place;
-    changed_[index(kept)] = sweep_;
+    changed_[index(kept)] = disturbed_[index(kept)] = sweep_;
     for (const VertexId v : stencil_.polygon) {
-      if (!mesh_.is_ghost(v)) changed_[index(v)] = sweep_;
+      if (mesh_.is_ghost(v)) continue;
+      disturbed_[index(v)] = sweep_;
+      // a collapse seldom helps those around it: to try them again is worth it at level 0 alone
+      if (!guard_) changed_[index(v)] = sweep_;
     }
   }
 
@@ -469,10 +488,11 @@ class StrictCollapse {
   std::vector<VertexId> parent_;  // level 0 only: where a vertex went, to be followed
 
   double tolerance_m_ = 0;  // of this sweep
-  bool is_polishing_ = false;
+  bool tries_more_places_ = false;
   std::uint32_t sweep_ = 0;
-  std::vector<std::uint32_t> changed_;  // sweep that last changed the surroundings of a vertex
-  std::vector<std::uint32_t> tested_;   // sweep that last tried a triangle, later a half-edge
+  std::vector<std::uint32_t> changed_;    // sweep after which a vertex is worth another try
+  std::vector<std::uint32_t> disturbed_;  // sweep that last changed the surroundings of a vertex
+  std::vector<std::uint32_t> tested_;     // sweep that last tried a triangle, later a half-edge
 
   std::vector<std::uint32_t> block_;
   Stencil stencil_;

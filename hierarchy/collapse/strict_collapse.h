@@ -21,9 +21,9 @@ struct StrictOptions {
   double tolerance_m = 1;
   /// Smallest altitude in plan of a new triangle, in cells: rounding must not turn it over.
   double smallest_altitude_cells = 0;
-  /// 0 to 3. Above 1, and only without a finer level: edges are flipped and vertices moved to where
-  /// the squared error is least, and collapses tried again, in more and more rounds. 0: triangles
-  /// alone collapse.
+  /// 0 to 3. Above 1, vertices are moved to where the squared error is least, without a finer level
+  /// edges are flipped, too, and collapses tried again, in more and more rounds. 0: without a finer
+  /// level, triangles alone collapse; with one, few places are tried for a new vertex.
   int effort = kDefaultEffort;
   /// How far the mesh's feature lines may move in plan.
   LineTolerance lines;
