@@ -102,6 +102,7 @@ hierarchy::SurfaceMesh mesh_shown(const MergeTree& tree, const MergeFront& front
       if (number[v] == ~std::uint32_t{0}) {
         number[v] = static_cast<std::uint32_t>(mesh.points.size());
         mesh.points.push_back(tree.lattice.origin() + tree.lattice.relative(tree.points[v]));
+        if (!tree.colours.empty()) mesh.colours.push_back(tree.colours[v]);
       }
       v = number[v];
     }
@@ -164,6 +165,9 @@ void add_criteria(CLI::App& cut, ViewCutCommand& command) {
       ->check(CLI::NonNegativeNumber);
   cut.add_option("--highlight", command.criteria.highlight_px,
                  "Length of edges tolerated where the highlight varies")
+      ->check(CLI::NonNegativeNumber);
+  cut.add_option("--colour", command.criteria.colour_px,
+                 "Length of edges tolerated where the colours of the vertices vary")
       ->check(CLI::NonNegativeNumber);
   cut.add_option("--light", command.light, "Direction to the light: x,y,z")
       ->delimiter(',')

@@ -136,6 +136,7 @@ SurfaceMesh compacted(const SurfaceMesh& mesh, const std::vector<Numbered>& tria
     }
     number[v] = static_cast<std::uint32_t>(result.points.size());
     result.points.push_back(mesh.points[v]);
+    if (!mesh.colours.empty()) result.colours.push_back(mesh.colours[v]);
   }
   for (const Numbered& triangle : triangles) {
     result.triangles.push_back(triangle.corners);

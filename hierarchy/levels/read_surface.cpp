@@ -30,6 +30,23 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   void set_point(OpenMesh::VertexHandle v, const OpenMesh::Vec3f& p) override {
     mesh.points[static_cast<std::size_t>(v.idx())] = {p[0], p[1], p[2]};
   }
+  void set_color(OpenMesh::VertexHandle v, const OpenMesh::Vec3uc& c) override {
+    // vertices without a colour are white
+    mesh.colours.resize(mesh.points.size(), {255, 255, 255});
+    mesh.colours[static_cast<std::size_t>(v.idx())] = {c[0], c[1], c[2]};
+  }
+  void set_color(OpenMesh::VertexHandle v, const OpenMesh::Vec4uc& c) override {
+    set_color(v, OpenMesh::Vec3uc(c[0], c[1], c[2]));
+  }
+  void set_color(OpenMesh::VertexHandle v, const OpenMesh::Vec3f& c) override {
+    const auto byte = [](float x) {
+      return static_cast<unsigned char>(std::clamp(x, 0.0F, 1.0F) * 255 + 0.5F);
+    };
+    set_color(v, OpenMesh::Vec3uc(byte(c[0]), byte(c[1]), byte(c[2])));
+  }
+  void set_color(OpenMesh::VertexHandle v, const OpenMesh::Vec4f& c) override {
+    set_color(v, OpenMesh::Vec3f(c[0], c[1], c[2]));
+  }
   OpenMesh::FaceHandle add_face(const VHandles& corners) override {
     for (std::size_t k = 2; k < corners.size(); ++k) {
       mesh.triangles.push_back({static_cast<std::uint32_t>(corners[0].idx()),
@@ -57,10 +74,6 @@ class Collector final : public OpenMesh::IO::BaseImporter {
   void set_halfedge(OpenMesh::VertexHandle, OpenMesh::HalfedgeHandle) override {}
   void set_normal(OpenMesh::VertexHandle, const OpenMesh::Vec3f&) override {}
   void set_normal(OpenMesh::VertexHandle, const OpenMesh::Vec3d&) override {}
-  void set_color(OpenMesh::VertexHandle, const OpenMesh::Vec3uc&) override {}
-  void set_color(OpenMesh::VertexHandle, const OpenMesh::Vec4uc&) override {}
-  void set_color(OpenMesh::VertexHandle, const OpenMesh::Vec3f&) override {}
-  void set_color(OpenMesh::VertexHandle, const OpenMesh::Vec4f&) override {}
   void set_texcoord(OpenMesh::VertexHandle, const OpenMesh::Vec2f&) override {}
   void set_status(OpenMesh::VertexHandle, const OpenMesh::Attributes::StatusInfo&) override {}
   void set_next(OpenMesh::HalfedgeHandle, OpenMesh::HalfedgeHandle) override {}
@@ -108,7 +121,7 @@ SurfaceMesh read_surface(const std::filesystem::path& file) {
   omerr().disable();
   omlog().disable();
   Collector collector;
-  OpenMesh::IO::Options options;
+  OpenMesh::IO::Options options = OpenMesh::IO::Options::VertexColor;
   const bool is_read = OpenMesh::IO::IOManager().read(file.string(), collector, options);
   if (!is_read) {
     throw InputError(fmt::format(
@@ -127,7 +140,9 @@ SurfaceMesh read_surface(const std::filesystem::path& file) {
         fmt::format("{}: triangle {} names vertex {}, but {} can be read. Complete the file",
                     file.string(), t, largest, count));
   }
-  return std::move(collector.mesh);
+  SurfaceMesh& mesh = collector.mesh;
+  if (!mesh.colours.empty()) mesh.colours.resize(mesh.points.size(), {255, 255, 255});
+  return std::move(mesh);
 }
 
 }  // namespace terrane::hierarchy

@@ -28,12 +28,17 @@ std::string encode_ply(const SurfaceMesh& mesh, std::span<const Eigen::Vector3d>
   if (!targets.empty()) {
     bytes += "property double target_x\nproperty double target_y\nproperty double target_z\n";
   }
+  if (!mesh.colours.empty()) {
+    bytes += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  }
   bytes += fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
                        mesh.triangles.size());
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     for (const double c : mesh.points[v]) append(bytes, c);
-    if (targets.empty()) continue;
-    for (const double c : targets[v]) append(bytes, c);
+    if (!targets.empty()) {
+      for (const double c : targets[v]) append(bytes, c);
+    }
+    if (!mesh.colours.empty()) append(bytes, mesh.colours[v]);
   }
   for (const Corners& corners : mesh.triangles) {
     bytes += '\3';

@@ -8,7 +8,8 @@
 
 namespace terrane::hierarchy {
 
-/// The mesh as a binary PLY (little-endian): x, y, z as doubles, exact to the last bit.
+/// The mesh as a binary PLY (little-endian): x, y, z as doubles, exact to the last bit;
+/// red, green, blue as bytes, if it has colours.
 ///
 /// \param targets  where each vertex morphs to, as the further properties target_x, target_y,
 ///                 target_z; one for each point, or empty.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <numeric>
+#include <span>
 
 #include "core/errors.h"
 #include "hierarchy/levels/build_levels.h"
@@ -37,19 +38,23 @@ std::vector<Eigen::Vector3d> rounded(const SurfaceMesh& mesh, const PointLattice
 class Numbering {
  public:
   explicit Numbering(std::size_t vertices) : number_(vertices, kNone) {}
-  std::uint32_t add(std::uint32_t vertex) { return number_[vertex] = next_++; }
+  void add(std::uint32_t vertex) {
+    number_[vertex] = static_cast<std::uint32_t>(order_.size());
+    order_.push_back(vertex);
+  }
   bool has(std::uint32_t vertex) const { return number_[vertex] != kNone; }
   std::uint32_t of(std::uint32_t vertex) const {
     return vertex == kOutside ? kOutside : number_[vertex];
   }
+  /// The vertices in the order of their numbers.
+  const std::vector<std::uint32_t>& order() const { return order_; }
 
  private:
-  std::vector<std::uint32_t> number_;
-  std::uint32_t next_ = 0;
+  std::vector<std::uint32_t> number_, order_;
 };
 
 MergeTree grown(const EdgeCollapser& collapser, MergeTree tree,
-                const std::vector<Eigen::Vector3i>& places) {
+                const std::vector<Eigen::Vector3i>& places, std::span<const Colour> colours) {
   Numbering numbers(collapser.vertex_count());
   const auto place = [&](std::uint32_t v) { return places[collapser.origin(v)]; };
   tree.triangles = collapser.triangles();
@@ -72,7 +77,12 @@ MergeTree grown(const EdgeCollapser& collapser, MergeTree tree,
                   .level = c->level});
     numbers.add(c->removed);
   }
-  return std::move(grower).finish();
+  tree = std::move(grower).finish();
+  if (colours.empty()) return tree;
+  for (const std::uint32_t v : numbers.order()) {
+    tree.colours.push_back(colours[collapser.origin(v)]);
+  }
+  return tree;
 }
 
 }  // namespace
@@ -82,7 +92,7 @@ MergeTree build_merge_tree(const SurfaceMesh& finest, const MergeTreeOptions& op
   MergeTree tree;
   tree.lattice = PointLattice::around(finest.points);
   tree.region = options.region;
-  SurfaceMesh mesh{rounded(finest, tree.lattice), finest.triangles};
+  SurfaceMesh mesh{rounded(finest, tree.lattice), finest.triangles, {}};
   tree.measure = is_height_field(mesh) ? ErrorMeasure::kVertical : ErrorMeasure::kDistance;
   std::vector<Eigen::Vector3i> places;
   for (const Eigen::Vector3d& p : mesh.points) places.push_back(tree.lattice.steps(p));
@@ -90,7 +100,7 @@ MergeTree build_merge_tree(const SurfaceMesh& finest, const MergeTreeOptions& op
   EdgeCollapser collapser(std::move(mesh.points), mesh.triangles, tree.lattice.step(), tree.measure,
                           options);
   collapser.run();
-  tree = grown(collapser, std::move(tree), places);
+  tree = grown(collapser, std::move(tree), places, finest.colours);
   measure_bounds(tree);
   return tree;
 }

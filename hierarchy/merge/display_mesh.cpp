@@ -39,6 +39,7 @@ void DisplayMesh::show_vertex(std::uint32_t vertex) {
   if (free_slots_.empty()) {
     positions_.resize(positions_.size() + 3);
     normals_.resize(normals_.size() + 3);
+    if (!tree_.colours.empty()) colours_.resize(colours_.size() + 4, 255);
   } else {
     slot = free_slots_.back();
     free_slots_.pop_back();
@@ -47,6 +48,9 @@ void DisplayMesh::show_vertex(std::uint32_t vertex) {
   ++vertex_count_;
   const Eigen::Vector3f& n = tree_.normals[vertex];
   std::copy_n(n.data(), 3, normals_.begin() + std::ptrdiff_t(3) * slot);
+  if (!tree_.colours.empty()) {
+    std::copy_n(tree_.colours[vertex].begin(), 3, colours_.begin() + std::ptrdiff_t(4) * slot);
+  }
   move(vertex, tree_.place(vertex));
 }
 

@@ -36,6 +36,8 @@ class DisplayMesh {
   /// Three floats for each slot, relative to the lattice's origin.
   const std::vector<float>& positions() const { return positions_; }
   const std::vector<float>& normals() const { return normals_; }
+  /// Four bytes for each slot, the last one 255; empty if the tree has no colours.
+  const std::vector<std::uint8_t>& colours() const { return colours_; }
 
   /// Ids of the triangles that show; as many as triangle_count().
   const std::vector<std::uint32_t>& shown() const { return shown_; }
@@ -55,6 +57,7 @@ class DisplayMesh {
   const MergeTree& tree_;
   std::vector<std::uint32_t> indices_;
   std::vector<float> positions_, normals_;
+  std::vector<std::uint8_t> colours_;
   std::vector<std::uint32_t> shown_;        // id of each triangle of indices_
   std::vector<std::uint32_t> triangle_at_;  // place in shown_, by id
   std::vector<std::uint32_t> slot_;         // by vertex

@@ -117,7 +117,12 @@ void BoundsMeter::measure_ranges(std::uint32_t i, MergeBounds& bounds) const {
   const std::uint32_t centre = tree_.centre(i);
   const Eigen::Vector3d& axis = normals_[centre];
   double radius = 0, angle = 0;
+  Colour low{255, 255, 255}, high{0, 0, 0};
   const auto take = [&](std::uint32_t v) {
+    for (std::size_t k = 0; k < 3 && !tree_.colours.empty(); ++k) {
+      low[k] = std::min(low[k], tree_.colours[v][k]);
+      high[k] = std::max(high[k], tree_.colours[v][k]);
+    }
     radius = std::max(radius, (points_[v] - points_[centre]).norm());
     angle = std::max(angle, angle_between(axis, normals_[v]));
   };
@@ -133,6 +138,9 @@ void BoundsMeter::measure_ranges(std::uint32_t i, MergeBounds& bounds) const {
     take_face(t);
   bounds.radius = rounded_up(radius);
   bounds.angle = rounded_up(angle);
+  int range = 0;
+  for (std::size_t k = 0; k < 3; ++k) range = std::max(range, high[k] - low[k]);
+  bounds.colour = rounded_up(range / 255.0);
 }
 
 double BoundsMeter::switch_distance(std::uint32_t i) {
@@ -152,11 +160,13 @@ void BoundsMeter::join_finer(std::uint32_t i, MergeBounds& bounds) const {
   double radius = bounds.radius, angle = bounds.angle;
   bounds.all_error = bounds.error;
   bounds.all_switched = bounds.switched;
+  bounds.all_colour = bounds.colour;
   for (const std::uint32_t f : tree_.finer(i)) {
     const MergeBounds& below = tree_.bounds[f];
     const std::uint32_t other = tree_.centre(f);
     bounds.all_error = std::max(bounds.all_error, below.all_error);
     bounds.all_switched = std::max(bounds.all_switched, below.all_switched);
+    bounds.all_colour = std::max(bounds.all_colour, below.all_colour);
     radius = std::max(radius, (points_[other] - points_[centre]).norm() + below.all_radius);
     angle = std::max(angle, angle_between(normals_[centre], normals_[other]) + below.all_angle);
   }

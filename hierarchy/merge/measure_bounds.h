@@ -14,6 +14,8 @@ namespace terrane::hierarchy {
 ///   merges is its downswitch distance.
 /// - radius, angle: of the sphere and the cone that hold all places, samples and normals of the
 ///   full mesh under the merge, and the triangles on either side of it with their normals.
+/// - colour: the largest difference of two of these places in red, green or blue, as a share of
+/// 255.
 /// - all_...: the same over the merge and all that have to be made before it.
 /// \par Source
 /// Xia and Varshney 1996, section 4.2: subtree attribute ranges.

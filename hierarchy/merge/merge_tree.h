@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hierarchy/levels/point_lattice.h"
+#include "hierarchy/levels/surface_mesh.h"
 #include "hierarchy/merge/view_ranges.h"
 #include "hierarchy/mesh/halfedge_mesh.h"
 
@@ -46,6 +47,7 @@ struct MergeBounds {
   float switched = 0, all_switched = 0;  ///< switch distance: see measure_bounds()
   float radius = 0, all_radius = 0;      ///< of spheres about the first child (edge) or the parent
   float angle = 0, all_angle = 0;        ///< of cones about that vertex's normal, radians, 0 to pi
+  float colour = 0, all_colour = 0;      ///< range of the colours, 0 to 1; all_: the largest such
 
   bool operator==(const MergeBounds&) const = default;
 };
@@ -66,6 +68,7 @@ struct MergeTree {
 
   std::vector<Eigen::Vector3i> points;   ///< lattice steps; those of the coarsest mesh come first
   std::vector<Eigen::Vector3f> normals;  ///< of the full mesh, unit; one for each point
+  std::vector<Colour> colours;           ///< one for each point, or none
   std::vector<Corners> triangles;        ///< all that ever show, those of the coarsest mesh first
   std::uint32_t coarsest_points = 0, coarsest_triangles = 0;
 

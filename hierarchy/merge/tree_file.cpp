@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <span>
 
 #include "core/errors.h"
 #include "hierarchy/levels/level_sequence.h"
@@ -17,7 +18,7 @@ namespace terrane::hierarchy {
 namespace {
 
 constexpr std::string_view kMagic = "TERRTREE";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2, kOldestVersion = 1;  // 1: without colours
 constexpr std::size_t kHeaderBytes = 64, kChecksumBytes = 4, kBlockHeaderBytes = 8;
 constexpr std::uint32_t kMergesPerBlock = 4096;
 constexpr float kLargestAngle = 4;  // pi, and what rounding up may add
@@ -28,6 +29,7 @@ struct Header {
   std::array<double, 3> origin{};
   ErrorMeasure measure = ErrorMeasure::kDistance;
   Region region = Region::kRemovedEnd;
+  bool has_colours = false;
   std::uint32_t points = 0, triangles = 0, merges = 0, coarsest_bytes = 0;
 };
 
@@ -42,7 +44,7 @@ std::string encoded(const Header& header) {
   }
   writer.fixed16(static_cast<std::uint32_t>(header.measure) |
                  static_cast<std::uint32_t>(header.region) << 8);
-  writer.fixed16(0);
+  writer.fixed16(header.has_colours);
   for (const auto n : {header.points, header.triangles, header.merges, header.coarsest_bytes}) {
     writer.fixed32(n);
   }
@@ -57,10 +59,22 @@ void append_checksum(std::string& bytes, std::size_t from) {
 
 std::uint32_t upper_half(float value) { return std::bit_cast<std::uint32_t>(value) >> 16; }
 
-std::array<float MergeBounds::*, 8> bound_members() {
-  return {&MergeBounds::error,        &MergeBounds::all_error, &MergeBounds::switched,
-          &MergeBounds::all_switched, &MergeBounds::radius,    &MergeBounds::all_radius,
-          &MergeBounds::angle,        &MergeBounds::all_angle};
+std::span<float MergeBounds::*const> bound_members(bool with_colours) {
+  static constexpr std::array<float MergeBounds::*, 10> kMembers{
+      &MergeBounds::error,        &MergeBounds::all_error, &MergeBounds::switched,
+      &MergeBounds::all_switched, &MergeBounds::radius,    &MergeBounds::all_radius,
+      &MergeBounds::angle,        &MergeBounds::all_angle, &MergeBounds::colour,
+      &MergeBounds::all_colour};
+  return std::span(kMembers).first(with_colours ? 10 : 8);
+}
+
+/// Normal, and colour if there is one.
+void write_look(const MergeTree& tree, std::uint32_t vertex, PackedWriter& writer) {
+  writer.fixed32(encoded_normal(tree.normals[vertex].cast<double>()));
+  if (tree.colours.empty()) return;
+  const auto [red, green, blue] = tree.colours[vertex];
+  writer.fixed16(static_cast<std::uint32_t>(red | green << 8));
+  writer.fixed16(blue);
 }
 
 std::string coarsest_body(const MergeTree& tree) {
@@ -69,7 +83,7 @@ std::string coarsest_body(const MergeTree& tree) {
   for (std::uint32_t v = 0; v < tree.coarsest_points; ++v) {
     writer.difference(tree.points[v], point);
     point = tree.points[v];
-    writer.fixed32(encoded_normal(tree.normals[v].cast<double>()));
+    write_look(tree, v, writer);
   }
   std::int64_t corner = 0;
   for (std::uint32_t t = 0; t < tree.coarsest_triangles; ++t) {
@@ -120,9 +134,11 @@ void write_merge(const MergeTree& tree, std::uint32_t i, const TreeGrower& growe
   }
   for (std::uint32_t k = 0; k < merge.child_count; ++k) {
     writer.difference(split.places[k], tree.points[merge.parent]);
-    writer.fixed32(encoded_normal(tree.normals[merge.first_child + k].cast<double>()));
+    write_look(tree, merge.first_child + k, writer);
   }
-  for (const auto member : bound_members()) writer.fixed16(upper_half(tree.bounds[i].*member));
+  for (const auto member : bound_members(!tree.colours.empty())) {
+    writer.fixed16(upper_half(tree.bounds[i].*member));
+  }
 }
 
 Split split_of(const MergeTree& tree, std::uint32_t i) {
@@ -169,7 +185,8 @@ class Parts {
 
 Header read_header(std::string_view bytes, const std::string& file) {
   PackedReader reader(bytes.substr(kMagic.size()), file);
-  if (const std::uint32_t version = reader.fixed32(); version != kVersion) {
+  const std::uint32_t version = reader.fixed32();
+  if (version < kOldestVersion || version > kVersion) {
     throw InputError(file + ": is of version " + std::to_string(version) +
                      ", and this terrane reads " + std::to_string(kVersion) + ". Build it again");
   }
@@ -180,12 +197,13 @@ Header read_header(std::string_view bytes, const std::string& file) {
     value = std::bit_cast<double>(low | std::uint64_t{reader.fixed32()} << 32);
     if (!std::isfinite(value)) reader.damaged();
   }
-  const std::uint32_t kinds = reader.fixed32();
-  if ((kinds & 0xff) > 1 || (kinds >> 8) > 1) reader.damaged();
+  const std::uint32_t kinds = reader.fixed16(), colours = reader.fixed16();
+  if ((kinds & 0xff) > 1 || (kinds >> 8) > 1 || colours > version - 1) reader.damaged();
   // beyond, places or what is worked out from them would not be finite
   if (header.exponent < -1000 || header.exponent > 200) reader.damaged();
   header.measure = static_cast<ErrorMeasure>(kinds & 0xff);
   header.region = static_cast<Region>(kinds >> 8);
+  header.has_colours = colours == 1;
   for (std::uint32_t* n :
        {&header.points, &header.triangles, &header.merges, &header.coarsest_bytes}) {
     *n = reader.fixed32();
@@ -193,11 +211,27 @@ Header read_header(std::string_view bytes, const std::string& file) {
   return header;
 }
 
+/// How the vertices of a tree look, as they are read.
+struct Looks {
+  bool has_colours = false;
+  std::vector<Eigen::Vector3f> normals;
+  std::vector<Colour> colours;
+
+  void read(PackedReader& reader) {
+    normals.push_back(decoded_normal(reader.fixed32()));
+    if (!has_colours) return;
+    const std::uint32_t two = reader.fixed16(), last = reader.fixed16();
+    if (last > 0xff) reader.damaged();
+    colours.push_back({static_cast<std::uint8_t>(two & 0xff), static_cast<std::uint8_t>(two >> 8),
+                       static_cast<std::uint8_t>(last)});
+  }
+};
+
 /// Reads splits into a grower.
 class MergeReader {
  public:
-  MergeReader(MergeTree seed, std::vector<Eigen::Vector3f> normals, const std::string& file)
-      : grower_(std::move(seed)), normals_(std::move(normals)), file_(file) {}
+  MergeReader(MergeTree seed, Looks looks, const std::string& file)
+      : grower_(std::move(seed)), looks_(std::move(looks)), file_(file) {}
 
   void read_block(std::string_view body, std::uint32_t count) {
     PackedReader reader(body, file_);
@@ -208,7 +242,8 @@ class MergeReader {
   std::uint32_t merge_count() const { return grower_.tree().merge_count(); }
   MergeTree finish() && {
     MergeTree tree = std::move(grower_).finish();
-    tree.normals = std::move(normals_);
+    tree.normals = std::move(looks_.normals);
+    tree.colours = std::move(looks_.colours);
     tree.bounds = std::move(bounds_);
     tree.view_ranges = view_ranges_of(tree);
     return tree;
@@ -237,15 +272,15 @@ class MergeReader {
     }
     for (std::uint32_t k = 0; k < split.child_count; ++k) {
       split.places[k] = reader.sum(grower_.tree().points[split.parent]);
-      normals_.push_back(decoded_normal(reader.fixed32()));
+      looks_.read(reader);
     }
     grower_.split(split);
     bounds_.push_back(read_bounds(reader));
   }
 
-  static MergeBounds read_bounds(PackedReader& reader) {
+  MergeBounds read_bounds(PackedReader& reader) const {
     MergeBounds bounds;
-    for (const auto member : bound_members()) {
+    for (const auto member : bound_members(looks_.has_colours)) {
       bounds.*member = std::bit_cast<float>(reader.fixed16() << 16);
       if (!(bounds.*member >= 0) || !std::isfinite(bounds.*member)) reader.damaged();
     }
@@ -254,7 +289,7 @@ class MergeReader {
   }
 
   TreeGrower grower_;
-  std::vector<Eigen::Vector3f> normals_;
+  Looks looks_;
   std::vector<MergeBounds> bounds_;
   const std::string& file_;
   Previous previous_;
@@ -266,13 +301,13 @@ MergeReader read_coarsest(const Header& header, std::string_view body, const std
       .lattice = {{header.origin[0], header.origin[1], header.origin[2]}, header.exponent},
       .measure = header.measure,
       .region = header.region};
-  std::vector<Eigen::Vector3f> normals;
+  Looks looks{.has_colours = header.has_colours, .normals = {}, .colours = {}};
   Eigen::Vector3i point(0, 0, 0);
   for (std::uint32_t i = 0; i < header.points; ++i) {
     point = reader.sum(point);
     if (point.cwiseAbs().maxCoeff() > 1 << 24) reader.damaged();
     seed.points.push_back(point);
-    normals.push_back(decoded_normal(reader.fixed32()));
+    looks.read(reader);
   }
   std::uint32_t corner = 0;
   for (std::uint32_t i = 0; i < header.triangles; ++i) {
@@ -281,7 +316,7 @@ MergeReader read_coarsest(const Header& header, std::string_view body, const std
     seed.triangles.push_back(corners);
   }
   if (!reader.is_at_end()) reader.damaged();
-  return {std::move(seed), std::move(normals), file};
+  return {std::move(seed), std::move(looks), file};
 }
 
 }  // namespace
@@ -293,6 +328,7 @@ std::string encode_tree(const MergeTree& tree) {
                                .origin = {origin[0], origin[1], origin[2]},
                                .measure = tree.measure,
                                .region = tree.region,
+                               .has_colours = !tree.colours.empty(),
                                .points = tree.coarsest_points,
                                .triangles = tree.coarsest_triangles,
                                .merges = tree.merge_count(),

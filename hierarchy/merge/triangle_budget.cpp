@@ -23,6 +23,7 @@ ViewCriteria at_tolerance(ViewCriteria criteria, double tolerance_px) {
   criteria.tolerance_px = tolerance_px;
   if (criteria.silhouette_px) *criteria.silhouette_px *= factor;
   if (criteria.highlight_px) *criteria.highlight_px *= factor;
+  if (criteria.colour_px) *criteria.colour_px *= factor;
   return criteria;
 }
 

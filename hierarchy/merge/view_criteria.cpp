@@ -74,8 +74,10 @@ ViewJudge::Facing ViewJudge::facing(const Eigen::Vector3d& to_eye, double sin_ey
   if (sin_eye_spread >= 1) return {cos_off, -1, 0};
   // cosine and sine of the sum of both angles, which is below 3 pi / 2
   const double cos_eye_spread = std::sqrt(1 - sin_eye_spread * sin_eye_spread);
-  return {cos_off, ranges.cos_angle * cos_eye_spread - ranges.sin_angle * sin_eye_spread,
-          ranges.sin_angle * cos_eye_spread + ranges.cos_angle * sin_eye_spread};
+  const double t = ranges.half_angle_tangent, unit = 1 / (1 + t * t);
+  const double cos_angle = (1 - t * t) * unit, sin_angle = 2 * t * unit;
+  return {cos_off, cos_angle * cos_eye_spread - sin_angle * sin_eye_spread,
+          sin_angle * cos_eye_spread + cos_angle * sin_eye_spread};
 }
 
 /// Largest less smallest brightness of (N . H)^s over a cone of normals.
@@ -131,7 +133,9 @@ bool ViewJudge::allows(const ViewRanges& merge, const ViewRanges::Ranges& ranges
   };
   const bool is_error = criteria_.measure == ScreenMeasure::kError;
   if (shows(is_error ? ranges.error : ranges.switched, tolerance)) return false;
-  return !has_highlight || !shows(ranges.switched, *criteria_.highlight_px);
+  if (has_highlight && shows(ranges.switched, *criteria_.highlight_px)) return false;
+  const bool varies = criteria_.colour_px && ranges.colour > criteria_.colour_contrast;
+  return !varies || !shows(ranges.switched, *criteria_.colour_px);
 }
 
 bool ViewJudge::allows(std::uint32_t i) const {

@@ -40,6 +40,9 @@ struct ViewCriteria {
   std::optional<double> silhouette_px;
   /// Where the highlight varies: longest switch distance on the screen.
   std::optional<double> highlight_px;
+  /// Where the colour varies: likewise.
+  std::optional<double> colour_px;
+  double colour_contrast = 0.1;     ///< range of red, green or blue within a merge, 0 to 1
   double highlight_contrast = 0.1;  ///< of the highlight's brightness within a merge, 0 to 1
   double shininess = 20;            ///< exponent of the highlight
   Eigen::Vector3d to_light = Eigen::Vector3d(0.3, 0.4, 0.866);  ///< unit, from the surface

@@ -9,11 +9,10 @@
 namespace terrane::hierarchy {
 namespace {
 
-ViewRanges::Ranges ranges(float error, float switched, float radius, float angle) {
-  // wider than cosine and sine lose as floats
+ViewRanges::Ranges ranges(float error, float switched, float radius, float angle, float colour) {
+  // wider than the tangent loses as a float
   const double wide = std::min(angle + 1e-6, std::numbers::pi);
-  return {error, switched, radius, static_cast<float>(std::cos(wide)),
-          static_cast<float>(std::sin(wide))};
+  return {error, switched, radius, static_cast<float>(std::tan(wide / 2)), colour};
 }
 
 }  // namespace
@@ -25,10 +24,11 @@ std::vector<ViewRanges> view_ranges_of(const MergeTree& tree) {
     const std::uint32_t centre = tree.centre(i);
     const Eigen::Vector3f place = tree.place(centre);
     const Eigen::Vector3f& axis = tree.normals[centre];
-    result[i] = {.place = {place.x(), place.y(), place.z()},
-                 .axis = {axis.x(), axis.y(), axis.z()},
-                 .own = ranges(b.error, b.switched, b.radius, b.angle),
-                 .all = ranges(b.all_error, b.all_switched, b.all_radius, b.all_angle)};
+    result[i] = {
+        .place = {place.x(), place.y(), place.z()},
+        .axis = {axis.x(), axis.y(), axis.z()},
+        .own = ranges(b.error, b.switched, b.radius, b.angle, b.colour),
+        .all = ranges(b.all_error, b.all_switched, b.all_radius, b.all_angle, b.all_colour)};
   }
   return result;
 }

@@ -11,9 +11,10 @@ struct MergeTree;
 /// What a view judges one merge by, in one cache line: a front judges thousands a frame, each
 /// somewhere else in memory.
 struct alignas(64) ViewRanges {
-  /// Of MergeBounds; the angle of the cone as cosine and sine, a little wider and pi at most.
+  /// Of MergeBounds; the angle of the cone as the tangent of its half, a little wider and pi at
+  /// most.
   struct Ranges {
-    float error, switched, radius, cos_angle, sin_angle;
+    float error, switched, radius, half_angle_tangent, colour;
   };
   std::array<float, 3> place{}, axis{};  ///< of the sphere and the cone
   Ranges own{};                          ///< of the merge

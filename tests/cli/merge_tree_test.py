@@ -4,6 +4,7 @@
 import collections
 import json
 import pathlib
+import re
 import struct
 import tempfile
 import unittest
@@ -95,6 +96,30 @@ class MergeTree(unittest.TestCase):
         _, report = self.cut(tree, "--switch-distance", "--pixels", 60, "--highlight", 20, "--light",
                              "1,0,1")
         self.assertLess(report["triangles"], 1600)
+
+    def test_colours_of_a_ply_come_along_and_ask_for_detail(self):
+        lines = torus_off(40, 20).split("\n")
+        vertices, faces = (int(n) for n in lines[1].split()[:2])
+        left = [float(line.split()[0]) < 0 for line in lines[2:2 + vertices]]
+        painted = [f"{line} {'250 10 20' if is_left else '10 20 250'}"
+                   for line, is_left in zip(lines[2:], left)]
+        header = ["ply", "format ascii 1.0", f"element vertex {vertices}",
+                  *(f"property float {axis}" for axis in "xyz"),
+                  *(f"property uchar {name}" for name in ("red", "green", "blue")),
+                  f"element face {faces}", "property list uchar int vertex_indices", "end_header"]
+        mesh, tree = self.folder / "torus.ply", self.folder / "torus.tree"
+        mesh.write_text("\n".join(header + painted + lines[2 + vertices:]))
+        self.run_well("merge-tree", mesh, "-o", tree)
+        _, plain = self.cut(tree, "--pixels", 20)
+        out, coloured = self.cut(tree, "--pixels", 20, "--colour", 10)
+        self.assertGreater(coloured["triangles"], 2 * plain["triangles"])
+        head, body = out.read_bytes().split(b"end_header\n", 1)
+        self.assertIn(b"property uchar blue", head)
+        count = int(re.search(rb"element vertex (\d+)", head)[1])
+        for v in range(count):
+            x, _, _, red, _, blue = struct.unpack_from("<3d3B", body, 27 * v)
+            if abs(x) > 1e-3:
+                self.assertEqual((red, blue), (250, 20) if x < 0 else (10, 250))
 
     def test_the_same_input_gives_the_same_bytes(self):
         first = self.torus_tree().read_bytes()

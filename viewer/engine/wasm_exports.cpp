@@ -28,7 +28,7 @@ const char* message_of(const Work& work) {
 
 // bits of terrane_set_criteria()
 constexpr unsigned kSwitchDistance = 1, kFrustum = 2, kBackFaces = 4, kSilhouette = 8,
-                   kHighlight = 16;
+                   kHighlight = 16, kColour = 32;
 
 }  // namespace
 }  // namespace terrane::viewer
@@ -61,8 +61,8 @@ EMSCRIPTEN_KEEPALIVE const char* terrane_look(double eye_x, double eye_y, double
 
 EMSCRIPTEN_KEEPALIVE void terrane_set_criteria(unsigned bits, double tolerance_px,
                                                double silhouette_px, double highlight_px,
-                                               double shininess, double light_x, double light_y,
-                                               double light_z) {
+                                               double colour_px, double shininess, double light_x,
+                                               double light_y, double light_z) {
   using namespace terrane::viewer;
   terrane::hierarchy::ViewCriteria criteria;
   if (bits & kSwitchDistance) {
@@ -73,6 +73,7 @@ EMSCRIPTEN_KEEPALIVE void terrane_set_criteria(unsigned bits, double tolerance_p
   criteria.back_faces = bits & kBackFaces;
   if (bits & kSilhouette) criteria.silhouette_px = silhouette_px;
   if (bits & kHighlight) criteria.highlight_px = highlight_px;
+  if (bits & kColour) criteria.colour_px = colour_px;
   criteria.shininess = shininess;
   criteria.to_light = {light_x, light_y, light_z};
   view->set_criteria(criteria);
@@ -92,7 +93,7 @@ EMSCRIPTEN_KEEPALIVE const char* terrane_update() {
 
 /// Numbers of the tree: see TreeSummary in view_engine.ts.
 EMSCRIPTEN_KEEPALIVE const double* terrane_summary() {
-  static std::array<double, 10> numbers;
+  static std::array<double, 11> numbers;
   const auto& tree = view->tree();
   const auto [middle, reach] = terrane::hierarchy::extent_of(tree);
   const auto& origin = tree.lattice.origin();
@@ -105,7 +106,8 @@ EMSCRIPTEN_KEEPALIVE const double* terrane_summary() {
              origin.x() + middle.x(),
              origin.y() + middle.y(),
              origin.z() + middle.z(),
-             reach};
+             reach,
+             double(!tree.colours.empty())};
   return numbers.data();
 }
 
@@ -128,6 +130,10 @@ EMSCRIPTEN_KEEPALIVE const std::uint32_t* terrane_indices() {
 }
 EMSCRIPTEN_KEEPALIVE const float* terrane_positions() { return view->display().positions().data(); }
 EMSCRIPTEN_KEEPALIVE const float* terrane_normals() { return view->display().normals().data(); }
+/// Null if the tree has none.
+EMSCRIPTEN_KEEPALIVE const std::uint8_t* terrane_colours() {
+  return view->display().colours().data();
+}
 /// Places for vertices in terrane_positions(), those that are free among them.
 EMSCRIPTEN_KEEPALIVE std::size_t terrane_slot_count() {
   return view->display().positions().size() / 3;

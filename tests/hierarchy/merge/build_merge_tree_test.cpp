@@ -148,6 +148,34 @@ TEST(MergeTreeOf, ALevelSequenceHasThreeChildrenAParentAndTheSameFinestMesh) {
               shape_of_mesh(mesh_at(sequence, 0)));
 }
 
+TEST(BuildMergeTree, ColoursStayWithTheirVerticesAndRangesHoldThem) {
+  const SurfaceMesh mesh = painted(sphere(3));
+  const MergeTree tree = build_merge_tree(mesh);
+  ASSERT_EQ(tree.colours.size(), tree.points.size());
+  // vertex by vertex: the tree's places are those of the mesh, to half a step
+  for (std::uint32_t v = 0; v < tree.points.size(); ++v) {
+    const Eigen::Vector3d p = tree.lattice.origin() + tree.lattice.relative(tree.points[v]);
+    const auto same = std::ranges::find_if(mesh.points, [&](const Eigen::Vector3d& q) {
+      return (p - q).cwiseAbs().maxCoeff() <= tree.lattice.step() / 2;
+    });
+    ASSERT_NE(same, mesh.points.end());
+    EXPECT_EQ(tree.colours[v], mesh.colours[same - mesh.points.begin()]);
+  }
+  for (std::uint32_t i = 0; i < tree.merge_count(); ++i) {
+    for (std::uint32_t t = tree.merges[i].fine_begin; t < tree.merges[i].fine_end; ++t) {
+      for (const std::uint32_t a : tree.triangles[t]) {
+        for (const std::uint32_t b : tree.triangles[t]) {
+          const double step = std::abs(tree.colours[a][0] - tree.colours[b][0]) / 255.0;
+          EXPECT_GE(tree.bounds[i].colour, step);
+        }
+      }
+    }
+    for (const std::uint32_t f : tree.finer(i)) {
+      EXPECT_GE(tree.bounds[i].all_colour, tree.bounds[f].all_colour);
+    }
+  }
+}
+
 TEST(BuildMergeTree, RefusesSettingsOutOfRange) {
   EXPECT_THROW(build_merge_tree(sphere(1), {.share = 0}), ConfigError);
   EXPECT_THROW(build_merge_tree(sphere(1), {.smallest_quality = 1}), ConfigError);

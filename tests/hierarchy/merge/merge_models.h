@@ -64,6 +64,15 @@ inline SurfaceMesh torn_torus(std::uint32_t m, std::uint32_t n) {
   return mesh;
 }
 
+/// Red where x is above 0 and blue elsewhere, less a green spot of one vertex.
+inline SurfaceMesh painted(SurfaceMesh mesh) {
+  for (const Eigen::Vector3d& p : mesh.points) {
+    mesh.colours.push_back(p.x() > 0 ? Colour{200, 0, 20} : Colour{0, 0, 220});
+  }
+  mesh.colours[mesh.points.size() / 2] = {0, 255, 0};
+  return mesh;
+}
+
 inline std::vector<Corners> shown_triangles(const MergeTree& tree, const MergeFront& front) {
   std::vector<Corners> result;
   for (const std::uint32_t t : front.display().shown()) result.push_back(tree.triangles[t]);

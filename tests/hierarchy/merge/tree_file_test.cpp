@@ -14,11 +14,22 @@ namespace {
 
 using namespace testing;
 
+/// CRC-32, bit by bit.
+std::uint32_t checksum(std::string_view bytes) {
+  std::uint32_t sum = 0xffffffff;
+  for (const char c : bytes) {
+    sum ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1) ^ (0xedb88320 & (0 - (sum & 1)));
+  }
+  return ~sum;
+}
+
 void expect_same(const MergeTree& a, const MergeTree& b) {
   EXPECT_TRUE(a.points == b.points);
   EXPECT_TRUE(a.normals == b.normals);
   EXPECT_TRUE(a.triangles == b.triangles);
   EXPECT_TRUE(a.bounds == b.bounds);
+  EXPECT_TRUE(a.colours == b.colours);
   EXPECT_TRUE(a.coarser_merges == b.coarser_merges);
   EXPECT_TRUE(a.finer_merges == b.finer_merges);
   EXPECT_TRUE(a.coarse_triangles == b.coarse_triangles);
@@ -30,7 +41,8 @@ void expect_same(const MergeTree& a, const MergeTree& b) {
 
 TEST(TreeFile, ComesBackAsItWas) {
   for (const MergeTree& tree :
-       {build_merge_tree(sphere(4)), build_merge_tree(torn_torus(60, 24)),
+       {build_merge_tree(sphere(4)), build_merge_tree(painted(sphere(4))),
+        build_merge_tree(torn_torus(60, 24)),
         build_merge_tree(hills(65, 65), {.region = Region::kBothEnds}),
         merge_tree_of(build_levels(hills(33, 33))), merge_tree_of(build_levels(torus(30, 12)))}) {
     const std::string bytes = encode_tree(tree);
@@ -40,8 +52,17 @@ TEST(TreeFile, ComesBackAsItWas) {
   }
 }
 
+TEST(TreeFile, OneOfTheVersionWithoutColoursIsReadAsWell) {
+  const MergeTree tree = build_merge_tree(sphere(3));
+  std::string bytes = encode_tree(tree);
+  bytes[8] = 1;
+  const std::uint32_t sum = checksum(std::string_view(bytes).substr(0, 60));
+  std::memcpy(bytes.data() + 60, &sum, 4);
+  expect_same(tree, decode_tree(bytes, "a.tree"));
+}
+
 TEST(TreeFile, EveryShortenedFileIsRefused) {
-  const std::string bytes = encode_tree(build_merge_tree(torn_torus(20, 8)));
+  const std::string bytes = encode_tree(build_merge_tree(painted(torn_torus(20, 8))));
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     EXPECT_THROW(decode_tree(bytes.substr(0, size), "a.tree"), InputError) << size;
   }
@@ -49,7 +70,7 @@ TEST(TreeFile, EveryShortenedFileIsRefused) {
 }
 
 TEST(TreeFile, EveryFlippedByteIsRefused) {
-  const std::string bytes = encode_tree(build_merge_tree(sphere(2)));
+  const std::string bytes = encode_tree(build_merge_tree(painted(sphere(2))));
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     std::string flipped = bytes;
     flipped[i] = static_cast<char>(flipped[i] ^ (1 << (i % 8)));
@@ -67,16 +88,6 @@ TEST(TreeFile, APrefixIsACoarserTreeWithTheSameBounds) {
   MergeFront front(part);
   front.update(ViewJudge(part, RandomViews(part, 1).camera(), {.tolerance_px = 0}));
   EXPECT_TRUE(Oracle(shown_triangles(part, front)).is_manifold);
-}
-
-/// CRC-32, bit by bit.
-std::uint32_t checksum(std::string_view bytes) {
-  std::uint32_t sum = 0xffffffff;
-  for (const char c : bytes) {
-    sum ^= static_cast<unsigned char>(c);
-    for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1) ^ (0xedb88320 & (0 - (sum & 1)));
-  }
-  return ~sum;
 }
 
 void reseal(std::string& bytes, std::size_t begin, std::size_t size) {

@@ -60,6 +60,34 @@ TEST_F(SphereView, HighlightsAreFineWhereTheyAre) {
   EXPECT_GT(lit, 4 * dark);
 }
 
+TEST(ViewCriteria, ColoursAreFineWhereTheyVary) {
+  SurfaceMesh mesh = sphere(5);
+  for (const Eigen::Vector3d& p : mesh.points) {
+    mesh.colours.push_back(p.x() > 0 ? Colour{200, 200, 200} : Colour{90, 90, 90});
+  }
+  const MergeTree tree = build_merge_tree(mesh);
+  const Eigen::Vector3d middle = -tree.lattice.origin();
+  const Camera camera = Camera::looking_at(middle + Eigen::Vector3d(0, -4, 0), middle);
+  MergeFront front(tree);
+  const auto shown_at = [&](double low, double high) {
+    std::uint32_t count = 0;
+    for (const Corners& c : shown_triangles(tree, front)) {
+      const double x = std::abs(tree.place(c[0]).x() - middle.x());
+      count += x >= low && x < high;
+    }
+    return count;
+  };
+  front.update(ViewJudge(tree, camera, {.tolerance_px = 20}));
+  const std::uint32_t coarse = front.display().triangle_count(), coarse_away = shown_at(0.4, 2);
+  front.update(ViewJudge(tree, camera, {.tolerance_px = 20, .colour_px = 10}));
+  EXPECT_GT(shown_at(0, 0.2), 4 * coarse);
+  EXPECT_LT(shown_at(0.4, 2), 4 * coarse_away);
+  // a border that is no sharper than what is tolerated is none
+  front.update(
+      ViewJudge(tree, camera, {.tolerance_px = 20, .colour_px = 10, .colour_contrast = 0.5}));
+  EXPECT_EQ(front.display().triangle_count(), coarse);
+}
+
 TEST_F(SphereView, NothingIsWantedBehindTheCamera) {
   const Camera away = Camera::looking_at(camera_.eye, camera_.eye + Eigen::Vector3d(0, -1, 0));
   front_.update(ViewJudge(tree_, away, {.tolerance_px = 1, .frustum = true}));

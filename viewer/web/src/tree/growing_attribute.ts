@@ -1,6 +1,6 @@
 import {BufferAttribute} from 'three';
 
-type Numbers = Uint32Array | Float32Array;
+type Numbers = Uint32Array | Float32Array | Uint8Array;
 
 /** Runs of elements: begin, end, begin, end, ... */
 export type Runs = ArrayLike<number>;
@@ -14,8 +14,9 @@ export class GrowingAttribute {
   constructor(
     private readonly make: (length: number) => Numbers,
     private readonly itemSize: number,
+    private readonly normalized = false,
   ) {
-    this.attribute = new BufferAttribute(make(0), itemSize);
+    this.attribute = new BufferAttribute(make(0), itemSize, normalized);
   }
 
   /**
@@ -25,7 +26,7 @@ export class GrowingAttribute {
    */
   reserve(length: number): boolean {
     if (length <= this.attribute.array.length) return false;
-    this.attribute = new BufferAttribute(this.make(Math.ceil(1.5 * length)), this.itemSize);
+    this.attribute = new BufferAttribute(this.make(Math.ceil(1.5 * length)), this.itemSize, this.normalized);
     return true;
   }
 

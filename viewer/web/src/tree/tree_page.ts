@@ -38,7 +38,7 @@ class TreePage {
   private readonly renderer: WebGLRenderer;
   private readonly camera = new PerspectiveCamera(kFovDeg);
   private readonly controls: OrbitControls;
-  private readonly view = new TreeScene();
+  private readonly view: TreeScene;
   private readonly panel: TreePanel;
   private settings = kTreeDefaults;
   private figures: PanelFigures | undefined;
@@ -53,6 +53,7 @@ class TreePage {
     name: string,
     {antialias, up}: {antialias: boolean; up: Vec3},
   ) {
+    this.view = new TreeScene(summary.hasColours);
     this.renderer = new WebGLRenderer({canvas, antialias});
     this.renderer.setClearColor(0xeef1f3);
     this.panel = new TreePanel(name, summary, (change) => this.set(change));

@@ -21,6 +21,7 @@ const kHtml = /* html */ `
       <label><input id="backFaces" type="checkbox" /> Coarse back</label>
       <label><input id="silhouettes" type="checkbox" /> Silhouettes</label>
       <label><input id="highlight" type="checkbox" /> Highlight</label>
+      <label id="colours-label"><input id="colours" type="checkbox" /> Colours</label>
       <label><input id="wireframe" type="checkbox" /> Triangles</label>
       <label><input id="blend" type="checkbox" /> Blend</label>
       <label><input id="frozen" type="checkbox" /> Freeze detail</label>
@@ -37,7 +38,10 @@ const kHtml = /* html */ `
     <dl id="stats"></dl>
   </details>`;
 
-const kTicks = ['frustum', 'backFaces', 'silhouettes', 'highlight', 'wireframe', 'blend', 'frozen'] as const;
+const kTicks = [
+  ...['frustum', 'backFaces', 'silhouettes', 'highlight'],
+  ...['colours', 'wireframe', 'blend', 'frozen'],
+] as (keyof TreeSettings & string)[];
 
 /** Figures of a frame, and what it cost the page. */
 export interface PanelFigures extends FrameFigures {
@@ -58,6 +62,7 @@ export class TreePanel {
     panel.innerHTML = kHtml;
     panel.hidden = false;
     element('title').textContent = name;
+    element('colours-label').hidden = !summary.hasColours;
     this.smallest = Math.log2(Math.max(2, summary.coarsestTriangles));
     this.largest = Math.log2(Math.max(3, summary.fullTriangles));
     Object.assign(element('budget'), {min: this.smallest, max: this.largest});
@@ -80,7 +85,7 @@ export class TreePanel {
   }
 
   showSettings(settings: TreeSettings): void {
-    for (const id of kTicks) element<HTMLInputElement>(id).checked = settings[id];
+    for (const id of kTicks) element<HTMLInputElement>(id).checked = settings[id] === true;
     element<HTMLSelectElement>('measure').value = settings.measure;
     const {budget, tolerancePx} = settings;
     element<HTMLInputElement>('hasBudget').checked = budget !== null;

@@ -16,9 +16,13 @@ import {kShininess} from './tree_settings';
 import type {ViewEngine} from './view_engine';
 
 const kVertex = /* glsl */ `
+  attribute vec4 tint;
+  uniform float hasTint;
   varying vec3 vNormal;
   varying vec3 vToEye;
+  varying vec3 vBase;
   void main() {
+    vBase = mix(vec3(0.72, 0.68, 0.62), tint.rgb, hasTint);
     vNormal = normal;
     vToEye = cameraPosition - position;
     gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
@@ -29,9 +33,10 @@ const kFragment = /* glsl */ `
   uniform vec3 toLight;
   varying vec3 vNormal;
   varying vec3 vToEye;
+  varying vec3 vBase;
   void main() {
     vec3 n = normalize(vNormal);
-    vec3 base = gl_FrontFacing ? vec3(0.72, 0.68, 0.62) : vec3(0.55, 0.42, 0.38);
+    vec3 base = gl_FrontFacing ? vBase : vec3(0.55, 0.42, 0.38);
     float lit = dot(n, toLight);
     vec3 color = base * (0.34 + 0.14 * n.z + 0.62 * max(lit, 0.0));
     vec3 h = normalize(normalize(vToEye) + toLight);
@@ -63,13 +68,14 @@ export class TreeScene {
   private readonly lineIndices = new GrowingAttribute((n) => new Uint32Array(n), 1);
   private readonly positions = new GrowingAttribute((n) => new Float32Array(n), 3);
   private readonly normals = new GrowingAttribute((n) => new Float32Array(n), 3);
+  private readonly tints = new GrowingAttribute((n) => new Uint8Array(n), 4, true);
   private readonly surface: Mesh<BufferGeometry, ShaderMaterial>;
   private readonly wires: LineSegments;
   private readonly eyeLines = new LineSegments(new BufferGeometry(), lines(0xb3441c, 1));
 
-  constructor() {
+  constructor(private readonly hasColours: boolean) {
     const material = new ShaderMaterial({
-      uniforms: {toLight: {value: new Vector3(0, 0, 1)}},
+      uniforms: {toLight: {value: new Vector3(0, 0, 1)}, hasTint: {value: Number(hasColours)}},
       vertexShader: kVertex,
       fragmentShader: kFragment,
       side: DoubleSide,
@@ -109,6 +115,7 @@ export class TreeScene {
       this.indices.reserve(corners),
       this.positions.reserve(coordinates),
       this.normals.reserve(coordinates),
+      this.hasColours && this.tints.reserve((4 * coordinates) / 3),
     ];
     if (!grown.includes(true)) return false;
     // lets go of the old buffers
@@ -117,6 +124,7 @@ export class TreeScene {
     this.geometry.setIndex(this.indices.attribute);
     this.geometry.setAttribute('position', this.positions.attribute);
     this.geometry.setAttribute('normal', this.normals.attribute);
+    if (this.hasColours) this.geometry.setAttribute('tint', this.tints.attribute);
     this.edges.setAttribute('position', this.positions.attribute);
     return true;
   }
@@ -127,6 +135,10 @@ export class TreeScene {
     this.normals.take(engine.normals(), slots, 3);
     this.uploadedBytes =
       this.indices.changedBytes + this.positions.changedBytes + this.normals.changedBytes;
+    if (this.hasColours) {
+      this.tints.take(engine.colours(), slots, 4);
+      this.uploadedBytes += this.tints.changedBytes;
+    }
     if (this.wires.visible) this.takeLines(triangles);
   }
 

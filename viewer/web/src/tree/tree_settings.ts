@@ -9,6 +9,8 @@ export interface TreeSettings {
   readonly backFaces: boolean;
   readonly silhouettes: boolean;
   readonly highlight: boolean;
+  /** Fine where the colour varies. */
+  readonly colours: boolean;
   /** Triangles that are shown at most; null: as many as the tolerance takes. */
   readonly budget: number | null;
   /** Splits and merges take a few frames. */
@@ -27,6 +29,7 @@ export const kTreeDefaults: TreeSettings = {
   backFaces: false,
   silhouettes: false,
   highlight: false,
+  colours: false,
   budget: null,
   blend: false,
   wireframe: true,
@@ -42,6 +45,7 @@ export const kMorphFrames = 8;
 /** Times the tolerance. */
 const kSilhouetteShare = 0.5;
 const kHighlightEdges = 16;
+const kColourEdges = 16;
 
 /** From the east towards the north, over the ground. */
 export function toLight({lightAzimuthDeg, lightHeightDeg}: TreeSettings): Vec3 {
@@ -59,6 +63,7 @@ export function criteriaOf(settings: TreeSettings): ViewCriteria {
     backFaces,
     silhouettePx: settings.silhouettes ? kSilhouetteShare * tolerancePx : null,
     highlightPx: settings.highlight ? kHighlightEdges * tolerancePx : null,
+    colourPx: settings.colours ? kColourEdges * tolerancePx : null,
     shininess: kShininess,
     toLight: toLight(settings),
   };

@@ -10,6 +10,7 @@ export interface TreeSummary {
   /** Middle of the mesh's box, in its frame, and half the box's diagonal. */
   readonly middle: Vec3;
   readonly reach: number;
+  readonly hasColours: boolean;
 }
 
 /** What one update did, and what shows after it. */
@@ -45,6 +46,8 @@ export interface ViewCriteria {
   readonly silhouettePx: number | null;
   /** Length of edges where the highlight varies; null: anything. */
   readonly highlightPx: number | null;
+  /** Likewise where the colour of the vertices varies. */
+  readonly colourPx: number | null;
   readonly shininess: number;
   /** Unit. */
   readonly toLight: Vec3;
@@ -69,6 +72,7 @@ interface EngineModule {
   _terrane_indices(): number;
   _terrane_positions(): number;
   _terrane_normals(): number;
+  _terrane_colours(): number;
   _terrane_slot_count(): number;
   _terrane_changed_triangles(): number;
   _terrane_changed_triangles_count(): number;
@@ -101,7 +105,7 @@ export class ViewEngine {
     const message = module._terrane_open(address, bytes.length);
     module._free(address);
     this.check(message);
-    const n = this.doubles(module._terrane_summary(), 10);
+    const n = this.doubles(module._terrane_summary(), 11);
     return {
       fullTriangles: n[0]!,
       coarsestTriangles: n[1]!,
@@ -109,6 +113,7 @@ export class ViewEngine {
       origin: [n[3]!, n[4]!, n[5]!],
       middle: [n[6]!, n[7]!, n[8]!],
       reach: n[9]!,
+      hasColours: n[10]! > 0,
     };
   }
 
@@ -119,16 +124,17 @@ export class ViewEngine {
   }
 
   setCriteria(criteria: ViewCriteria): void {
-    const {silhouettePx, highlightPx} = criteria;
+    const {silhouettePx, highlightPx, colourPx} = criteria;
     const bits =
       (criteria.measure === 'length' ? 1 : 0) |
       (criteria.frustum ? 2 : 0) |
       (criteria.backFaces ? 4 : 0) |
       (silhouettePx !== null ? 8 : 0) |
-      (highlightPx !== null ? 16 : 0);
+      (highlightPx !== null ? 16 : 0) |
+      (colourPx !== null ? 32 : 0);
     const {tolerancePx, shininess, toLight} = criteria;
     this.module._terrane_set_criteria(
-      ...[bits, tolerancePx, silhouettePx ?? 0, highlightPx ?? 0, shininess, ...toLight],
+      ...[bits, tolerancePx, silhouettePx ?? 0, highlightPx ?? 0, colourPx ?? 0, shininess, ...toLight],
     );
   }
 
@@ -166,6 +172,11 @@ export class ViewEngine {
   }
   normals(): Float32Array {
     return this.floats(this.module._terrane_normals(), 3 * this.slotCount);
+  }
+  /** Four bytes a slot; empty if the tree has no colours. */
+  colours(): Uint8Array {
+    const address = this.module._terrane_colours() >>> 0;
+    return this.module.HEAPU8.subarray(address, address + (address ? 4 * this.slotCount : 0));
   }
   get slotCount(): number {
     return this.module._terrane_slot_count();

@@ -26,6 +26,7 @@ const kPlain = {
   backFaces: false,
   silhouettes: false,
   highlight: false,
+  colours: false,
   budget: null,
   blend: false,
   wireframe: false,
