@@ -9,7 +9,8 @@ namespace terrane::hierarchy {
 /// Reads a mesh from an OBJ, PLY, OFF or STL file (through OpenMesh), as it is.
 ///
 /// Faces with more than three corners become fans of triangles. STL files repeat their vertices:
-/// equal ones are joined. Normals, colours and textures are ignored.
+/// equal ones are joined. Colours of vertices are kept (white where one has none); normals and
+/// textures are ignored.
 /// \throws InputError if the file cannot be read, or holds no face.
 SurfaceMesh read_surface(const std::filesystem::path& file);
 

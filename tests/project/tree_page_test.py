@@ -24,14 +24,19 @@ PICTURE = "640,480"  # that of browser.mjs
 
 
 def knobbly_torus(columns=120, rows=60):
-    """Closed, 2 * columns * rows triangles, about (10, -20, 5)."""
-    lines = [f"OFF\n{columns * rows} {2 * columns * rows} 0"]
+    """A PLY: closed, 2 * columns * rows triangles, about (10, -20, 5), in two colours."""
+    lines = ["ply", "format ascii 1.0", f"element vertex {columns * rows}",
+             *(f"property double {axis}" for axis in "xyz"),
+             *(f"property uchar {name}" for name in ("red", "green", "blue")),
+             f"element face {2 * columns * rows}", "property list uchar int vertex_indices",
+             "end_header"]
     for i in range(columns):
         for j in range(rows):
             u, v = 2 * math.pi * i / columns, 2 * math.pi * j / rows
             r = 0.4 + 0.03 * math.sin(7 * u) * math.sin(5 * v) + 0.01 * math.sin(31 * u + 17 * v)
             x, y = (1 + r * math.cos(v)) * math.cos(u), (1 + r * math.cos(v)) * math.sin(u)
-            lines.append(f"{10 + x:.9f} {-20 + y:.9f} {5 + r * math.sin(v):.9f}")
+            colour = "180 60 40" if i % 40 < 20 else "60 90 170"
+            lines.append(f"{10 + x:.9f} {-20 + y:.9f} {5 + r * math.sin(v):.9f} {colour}")
     for i in range(columns):
         for j in range(rows):
             a, b = i * rows + j, (i + 1) % columns * rows + j
@@ -58,6 +63,7 @@ def cameras():
         (near, side, {"tolerancePx": 4, "silhouettes": True}, ["--pixels", "4", "--silhouette", "2"]),
         (near, side, {"tolerancePx": 4, "highlight": True, "lightAzimuthDeg": 0, "lightHeightDeg": 90},
          ["--pixels", "4", "--highlight", "64", "--light=0,0,1"]),
+        (near, side, {"tolerancePx": 4, "colours": True}, ["--pixels", "4", "--colour", "64"]),
         (near, side, {"tolerancePx": 40, "measure": "length"}, ["--pixels", "40", "--switch-distance"]),
         (near, side, {"tolerancePx": 0.5, "frustum": True, "backFaces": True},
          ["--pixels", "0.5", "--frustum", "--back-faces"]),
@@ -110,7 +116,7 @@ def main():
         return SKIPPED
 
     options.work.mkdir(parents=True, exist_ok=True)
-    mesh, tree = options.work / "torus.off", options.work / "torus.tree"
+    mesh, tree = options.work / "torus.ply", options.work / "torus.tree"
     mesh.write_text(knobbly_torus())
     subprocess.run([options.terrane, "--quiet", "merge-tree", mesh, "-o", tree], check=True)
     cuts = options.work / "cuts.json"
