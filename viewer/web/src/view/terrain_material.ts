@@ -1,6 +1,7 @@
 import {Color, ShaderMaterial, Texture, Vector2, Vector3, Vector4, type IUniform} from 'three';
 import type {Daylight} from '../core/daylight';
 import {kMostHoldbacks} from '../core/holdback';
+import type {ImageSlope} from '../core/image_slope';
 import type {HoldbackUniform, MorphUniforms} from '../core/morph';
 import type {Tile, Tileset} from '../core/tileset';
 import {levelColor, rampTexture} from './color_ramps';
@@ -17,7 +18,7 @@ export type SharedUniforms = ReturnType<typeof sharedUniforms>;
 const kEarthRadiusM = 6371008.8;
 
 /** The uniforms at their start values; terrain_view.ts and below set them. */
-export function sharedUniforms({minHeightM, maxHeightM, curved}: Tileset) {
+export function sharedUniforms({minHeightM, maxHeightM, curved, levels, cellM}: Tileset) {
   return {
     eyeM: {value: new Vector3()},
     /** The render origin in the world. */
@@ -40,6 +41,8 @@ export function sharedUniforms({minHeightM, maxHeightM, curved}: Tileset) {
     /** Interval, next interval, blend; and 0 where there are none. */
     contours: {value: new Vector3(1, 2, 0)},
     contourStrength: {value: 0},
+    /** Rise of the tolerance over a cell: the same at all levels of a ladder. */
+    levelSlope: {value: levels[0]!.toleranceM / cellM},
     hazePerM: {value: 0},
     sun: {value: new Vector3(0, 0, 1)},
     sunlight: {value: new Vector3()},
@@ -72,6 +75,7 @@ export function setHoldbacks(shared: SharedUniforms, holdbacks: readonly Holdbac
 /** What lies on the terrain of a tile. */
 export interface Drape {
   readonly image: Texture | undefined;
+  readonly imageSlope: ImageSlope;
   readonly hasColors: boolean;
 }
 
@@ -92,6 +96,7 @@ export function terrainMaterial(shared: SharedUniforms, tile: Tile, drape: Drape
       perM: {value: 0},
       errorM: {value: tile.errorM},
       image: {value: drape.image ?? null},
+      imageSlope: {value: new Vector4(...drape.imageSlope)},
       // set as it is: the shader writes to the screen without conversion
       levelColor: {value: new Color().setHex(levelColor(tile.level), '')},
     },

@@ -44,10 +44,12 @@ export const kVertexShader = /* glsl */ `
   varying vec3 vFromEyeM;
   #ifdef IMAGE
   attribute vec2 imagePlace;
+  uniform vec4 imageSlope;
   varying vec2 vImagePlace;
   #endif
   #ifdef COLORS
   attribute vec3 vertexColor;
+  attribute vec3 targetColor;
   varying vec3 vColor;
   #endif
 
@@ -61,10 +63,11 @@ export const kVertexShader = /* glsl */ `
     vHeightM = place.z + originM.z + dot(plan, plan) * dropPerM;
     vFromEyeM = place - eyeM;
     #ifdef IMAGE
-    vImagePlace = imagePlace;
+    vec2 moved = t * zUp(toTarget).xy;
+    vImagePlace = imagePlace + vec2(dot(imageSlope.xy, moved), dot(imageSlope.zw, moved));
     #endif
     #ifdef COLORS
-    vColor = vertexColor;
+    vColor = mix(vertexColor, targetColor, t);
     #endif
     gl_Position = toScreen(place);
   }
@@ -121,6 +124,7 @@ export const kFragmentShader = /* glsl */ `
   uniform float hazePerM;
   uniform vec3 contours;
   uniform float contourStrength;
+  uniform float levelSlope;
   varying vec3 vNormal;
   varying float vHeightM;
   varying vec3 vFromEyeM;
@@ -166,8 +170,14 @@ export const kFragmentShader = /* glsl */ `
     return heightColor();
   }
 
-  // lines a pixel and a bit wide; every fifth is stronger; none where they would merge, and none on
-  // level ground that happens to lie at such a height
+  // 0 where the ground is as level as the mesh may be wrong: at a contour's height its lines would follow
+  // the triangles there
+  float relief() {
+    vec3 up = cross(dFdx(vFromEyeM), dFdy(vFromEyeM));
+    return smoothstep(0.15, 0.6, length(up.xy) / max(abs(up.z), 1e-12) / levelSlope);
+  }
+
+  // lines a pixel and a bit wide; every fifth is stronger; none where they would merge
   float contour(float intervalM) {
     float steps = vHeightM / intervalM;
     float perPx = max(fwidth(steps), 1e-6);
@@ -175,7 +185,7 @@ export const kFragmentShader = /* glsl */ `
     float fifth = abs(fract(steps / 5.0 - 0.5) - 0.5) * 5.0 / perPx;
     float line = 0.7 * (1.0 - smoothstep(0.3, 1.2, px)) * (1.0 - smoothstep(0.12, 0.4, perPx));
     float strong = (1.0 - smoothstep(0.6, 1.6, fifth)) * (1.0 - smoothstep(0.6, 2.0, perPx));
-    return max(line, 0.9 * strong) * smoothstep(2e-4, 1e-3, perPx);
+    return max(line, 0.9 * strong);
   }
 
   void main() {
@@ -189,7 +199,7 @@ export const kFragmentShader = /* glsl */ `
     color *= isReading ? mix(vec3(1.0), light, 0.5) : light;
     if (contourStrength > 0.0) {
       float line = mix(contour(contours.x), contour(contours.y), contours.z);
-      color = mix(color, color * vec3(0.42, 0.3, 0.2), contourStrength * line);
+      color = mix(color, color * vec3(0.42, 0.3, 0.2), contourStrength * relief() * line);
     }
     float far = length(vFromEyeM) * hazePerM;
     vec3 direction = normalize(vFromEyeM);

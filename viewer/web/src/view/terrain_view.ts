@@ -17,7 +17,7 @@ import type {Tile, Tileset} from '../core/tileset';
 import {add, length, subtract, type Vec3} from '../core/vec3';
 import {Sky} from './sky';
 import {setHoldbacks, setMorph, sharedUniforms, type SharedUniforms} from './terrain_material';
-import {borderLines, completeNormals, triangleLines, type TileContent} from './tile_content';
+import {borderLines, completeTargets, triangleLines, type TileContent} from './tile_content';
 
 /** What one picture holds. */
 export interface Drawn {
@@ -141,7 +141,7 @@ export class TerrainView {
     for (const tile of frame.cut) {
       if (!isInPicture(tile.box)) continue;
       const content = contentOf(tile);
-      completeNormals(content, tile.parent ? contentOf(tile.parent) : undefined);
+      completeTargets(content, tile.parent ? contentOf(tile.parent) : undefined);
       this.show(content, this.uniformsOf(tile, content, frame));
       ++tiles;
       triangles += content.triangles;

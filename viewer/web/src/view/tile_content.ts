@@ -10,7 +10,13 @@ import {
 } from 'three';
 import {borderOf} from '../core/border';
 import type {GlbTile} from '../core/glb';
-import {targetNormals, type TileVertices} from '../core/target_normals';
+import {imageSlope} from '../core/image_slope';
+import {
+  targetColors,
+  targetNormals,
+  targetVertices,
+  type TileVertices,
+} from '../core/target_vertices';
 import type {Level, Tile} from '../core/tileset';
 import {lineMaterial, terrainMaterial, type SharedUniforms} from './terrain_material';
 import type {Decoded} from './tile_decoder';
@@ -49,12 +55,13 @@ export function makeContent(
   geometry.setIndex(new BufferAttribute(indices, 1));
 
   const texture = image && places ? textureOf(image) : undefined;
-  const drape = {image: texture, hasColors: colors !== undefined};
+  const slope = places ? imageSlope(positions, places) : ([0, 0, 0, 0] as const);
+  const drape = {image: texture, imageSlope: slope, hasColors: colors !== undefined};
   const mesh = fixed(new Mesh(geometry, terrainMaterial(shared, tile, drape)));
-  // what the arrays take here and on the card, target normals included
+  // what the arrays take here and on the card, target normals and colours included
   const arrays = 2 * (2 * positions.byteLength + 2 * normals.byteLength + indices.byteLength);
   const pixels = image ? (4 / 3) * 4 * image.width * image.height : 0;
-  const more = 2 * ((colors?.byteLength ?? 0) + (places?.byteLength ?? 0));
+  const more = 2 * (2 * (colors?.byteLength ?? 0) + (places?.byteLength ?? 0));
   return {
     bytes: arrays + pixels + more,
     triangles: indices.length / 3,
@@ -64,12 +71,18 @@ export function makeContent(
   };
 }
 
-/** Gives the mesh the normals it morphs to. \pre the parent's content is loaded (none: the root) */
-export function completeNormals(content: TileContent, parent: TileContent | undefined): void {
+/** Gives the mesh what it morphs to. \pre the parent's content is loaded (none: the root) */
+export function completeTargets(content: TileContent, parent: TileContent | undefined): void {
   const {geometry} = content.mesh;
   if (geometry.hasAttribute('targetNormal')) return;
-  const normals = parent ? targetNormals(content, parent) : (content.normals as Int8Array);
-  geometry.setAttribute('targetNormal', new BufferAttribute(normals, 3, true));
+  const targets = parent && targetVertices(content, parent);
+  const normals = targets ? targetNormals(content, parent, targets) : content.normals;
+  geometry.setAttribute('targetNormal', new BufferAttribute(normals as Int8Array, 3, true));
+  if (!geometry.hasAttribute('vertexColor')) return;
+  const colors = geometry.getAttribute('vertexColor').array as Uint8Array;
+  const above = parent?.mesh.geometry.attributes.vertexColor?.array as Uint8Array | undefined;
+  const ends = targets && above ? targetColors(colors, above, targets) : colors;
+  geometry.setAttribute('targetColor', new BufferAttribute(ends, 3, true));
 }
 
 const kTriangleColor = new Vector4(0.05, 0.08, 0.12, 0.3);

@@ -15,7 +15,7 @@ import {length, subtract, type Vec3} from '../core/vec3';
 import {Navigation} from './navigation';
 import {setDaylight} from './terrain_material';
 import {kFovDeg, TerrainView, type Drawn} from './terrain_view';
-import {completeNormals, disposeContent, makeContent, type TileContent} from './tile_content';
+import {completeTargets, disposeContent, makeContent, type TileContent} from './tile_content';
 import {TileDecoder} from './tile_decoder';
 
 /** The figures of the last frame. */
@@ -240,7 +240,7 @@ export class Viewer {
       const content = makeContent(decoded, tile, this.tileset.levels, this.view.shared);
       this.hasImagery ||= content.hasDrape;
       const parent = tile.parent && this.streamer.content(tile.parent);
-      if (parent || !tile.parent) completeNormals(content, parent ?? undefined);
+      if (parent || !tile.parent) completeTargets(content, parent ?? undefined);
       this.tilesMs += performance.now() - beginMs;
       ++this.tilesMade;
       return content;

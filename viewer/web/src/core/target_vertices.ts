@@ -1,5 +1,5 @@
-// Light must not jump where levels change. A vertex at t = 1 stands on a vertex of the next coarser
-// level, so it takes that vertex's normal there. The parent tile holds it.
+// Light and colour must not jump where levels change. A vertex at t = 1 stands on a vertex of the next
+// coarser level, so it takes that vertex's normal and colour there. The parent tile holds them.
 import type {Vec3} from './vec3';
 
 /** A tile as its glb holds it; glTF triples. */
@@ -14,24 +14,50 @@ export interface TileVertices {
   readonly normals: ArrayLike<number>;
 }
 
-/**
- * The normal of each vertex's place at t = 1, in signed bytes (glTF triples, the child's steps).
- * A vertex whose place the parent does not hold keeps its own.
- */
-export function targetNormals(child: TileVertices, parent: TileVertices): Int8Array {
+/** The parent's vertex at the place of each vertex at t = 1; -1 where the parent has none. */
+export function targetVertices(child: TileVertices, parent: TileVertices): Int32Array {
   const find = finder(parent);
   const place = new Float64Array(3);
   const toParent = changeOfLattice(child, parent);
-  const normals = Int8Array.from(child.normals);
-  for (let i = 0; i < normals.length; i += 3) {
+  const targets = new Int32Array(child.positions.length / 3);
+  for (let i = 0; i < child.positions.length; i += 3) {
     for (let k = 0; k < 3; ++k) {
       const steps = child.positions[i + k]! + child.toTargets[i + k]!;
       place[k] = (steps + toParent.shift[k]!) * toParent.ratio[k]!;
     }
-    const match = find(place[0]!, place[1]!, place[2]!);
-    if (match >= 0) restate(parent.normals, 3 * match, toParent.ratio, normals, i);
+    targets[i / 3] = find(place[0]!, place[1]!, place[2]!);
   }
+  return targets;
+}
+
+/**
+ * The normal of each vertex's place at t = 1, in signed bytes (glTF triples, the child's steps).
+ * A vertex without a target keeps its own.
+ */
+export function targetNormals(
+  child: TileVertices,
+  parent: TileVertices,
+  targets = targetVertices(child, parent),
+): Int8Array {
+  const {ratio} = changeOfLattice(child, parent);
+  const normals = Int8Array.from(child.normals);
+  targets.forEach((target, i) => {
+    if (target >= 0) restate(parent.normals, 3 * target, ratio, normals, 3 * i);
+  });
   return normals;
+}
+
+/** The colour of each vertex's place at t = 1, in triples. A vertex without a target keeps its own. */
+export function targetColors(
+  colors: Uint8Array,
+  parentColors: Uint8Array,
+  targets: Int32Array,
+): Uint8Array {
+  const ends = Uint8Array.from(colors);
+  targets.forEach((target, i) => {
+    if (target >= 0) ends.set(parentColors.subarray(3 * target, 3 * target + 3), 3 * i);
+  });
+  return ends;
 }
 
 /** (steps of the child + shift) * ratio = steps of the parent; exact: steps are powers of two. */

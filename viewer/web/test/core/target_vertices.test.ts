@@ -1,5 +1,10 @@
 import {describe, expect, it} from 'vitest';
-import {targetNormals, type TileVertices} from '../../src/core/target_normals';
+import {
+  targetColors,
+  targetNormals,
+  targetVertices,
+  type TileVertices,
+} from '../../src/core/target_vertices';
 
 /** Vertices 0 and 1 go to the parent's vertex at (4, 2, 8) steps, vertex 2 to none. */
 const child: TileVertices = {
@@ -17,6 +22,15 @@ const parent: TileVertices = {
   toTargets: [0, 0, 0, 0, 0, 0],
   normals: [0, 127, 0, 76, 102, 0],
 };
+
+describe('targetColors', () => {
+  it('takes the colour of the parent vertex that a vertex ends at', () => {
+    const colors = Uint8Array.from([1, 1, 1, 2, 2, 2, 3, 3, 3]);
+    const parentColors = Uint8Array.from([7, 7, 7, 8, 9, 10]);
+    const targets = targetVertices(child, parent);
+    expect([...targetColors(colors, parentColors, targets)]).toEqual([8, 9, 10, 8, 9, 10, 3, 3, 3]);
+  });
+});
 
 describe('targetNormals', () => {
   it('takes the normal of the parent vertex that a vertex ends at', () => {
