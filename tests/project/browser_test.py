@@ -13,6 +13,8 @@ import shutil
 import subprocess
 import sys
 
+import aerial_image
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BROWSER = ROOT / "viewer/web/test/browser"
 IMAGES = ROOT / "docs/images/viewer"
@@ -61,6 +63,20 @@ def served(terrane, folder):
         server.wait()
 
 
+def run_check(url, script, *arguments):
+    return subprocess.run(["node", BROWSER / script, "--url", url, *arguments]).returncode
+
+
+def check_imagery(options, dem, tolerance_m):
+    image = options.work / "air.ppm"
+    aerial_image.write_image(image)
+    tiles = options.work / "tiles_with_images"
+    subprocess.run([options.terrane, "build", dem, "-o", tiles, "--tolerance", tolerance_m,
+                    "--texture", image], check=True)
+    with served(options.terrane, tiles) as url:
+        return run_check(url, "looks.mjs", "--images", IMAGES, "--imagery")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("terrain", choices=sorted(TERRAINS))
@@ -87,9 +103,10 @@ def main():
             subprocess.run([options.terrane, "pack", tiles, "-o", archive], check=True)
             checks += [["looks.mjs", "--images", IMAGES],
                        ["archive.mjs", "--archive", archive, "--dist", options.viewer_built]]
-        codes = [subprocess.run(["node", BROWSER / script, "--url", url, *rest]).returncode
-                 for script, *rest in checks]
-        return max(codes)
+        codes = [run_check(url, *check) for check in checks]
+    if options.terrain == "caldera":
+        codes.append(check_imagery(options, dem, tolerance_m))
+    return max(codes)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 import {Color, ShaderMaterial, Texture, Vector2, Vector3, Vector4, type IUniform} from 'three';
 import type {Daylight} from '../core/daylight';
 import {kMostHoldbacks} from '../core/holdback';
-import type {ImageSlope} from '../core/image_slope';
+import type {ImageMap} from '../core/image_map';
 import type {HoldbackUniform, MorphUniforms} from '../core/morph';
 import type {Tile, Tileset} from '../core/tileset';
 import {levelColor, rampTexture} from './color_ramps';
@@ -75,7 +75,7 @@ export function setHoldbacks(shared: SharedUniforms, holdbacks: readonly Holdbac
 /** What lies on the terrain of a tile. */
 export interface Drape {
   readonly image: Texture | undefined;
-  readonly imageSlope: ImageSlope;
+  readonly imageMap: ImageMap;
   readonly hasColors: boolean;
 }
 
@@ -96,7 +96,10 @@ export function terrainMaterial(shared: SharedUniforms, tile: Tile, drape: Drape
       perM: {value: 0},
       errorM: {value: tile.errorM},
       image: {value: drape.image ?? null},
-      imageSlope: {value: new Vector4(...drape.imageSlope)},
+      imageSlope: {value: new Vector4(...drape.imageMap.slope)},
+      parentImage: {value: null},
+      parentStart: {value: new Vector2()},
+      parentSlope: {value: new Vector4()},
       // set as it is: the shader writes to the screen without conversion
       levelColor: {value: new Color().setHex(levelColor(tile.level), '')},
     },
@@ -112,6 +115,13 @@ export function lineMaterial(tile: ShaderMaterial, color: Vector4, wireframe: bo
     transparent: true,
     wireframe,
   });
+}
+
+/** Hands a tile the image that it blends into, and how that lies on it. */
+export function setParentImage({uniforms}: ShaderMaterial, image: Texture, map: ImageMap): void {
+  uniforms.parentImage!.value = image;
+  uniforms.parentStart!.value.fromArray(map.start);
+  uniforms.parentSlope!.value.fromArray(map.slope);
 }
 
 /** Hands one frame's morph to a tile's material. Eye and holdbacks are shared uniforms. */

@@ -45,7 +45,11 @@ export const kVertexShader = /* glsl */ `
   #ifdef IMAGE
   attribute vec2 imagePlace;
   uniform vec4 imageSlope;
+  uniform vec2 parentStart;
+  uniform vec4 parentSlope;
   varying vec2 vImagePlace;
+  varying vec2 vParentPlace;
+  varying float vMorph;
   #endif
   #ifdef COLORS
   attribute vec3 vertexColor;
@@ -65,6 +69,9 @@ export const kVertexShader = /* glsl */ `
     #ifdef IMAGE
     vec2 moved = t * zUp(toTarget).xy;
     vImagePlace = imagePlace + vec2(dot(imageSlope.xy, moved), dot(imageSlope.zw, moved));
+    vec2 steps = zUp(position).xy + moved;
+    vParentPlace = parentStart + vec2(dot(parentSlope.xy, steps), dot(parentSlope.zw, steps));
+    vMorph = t;
     #endif
     #ifdef COLORS
     vColor = mix(vertexColor, targetColor, t);
@@ -130,7 +137,10 @@ export const kFragmentShader = /* glsl */ `
   varying vec3 vFromEyeM;
   #ifdef IMAGE
   uniform sampler2D image;
+  uniform sampler2D parentImage;
   varying vec2 vImagePlace;
+  varying vec2 vParentPlace;
+  varying float vMorph;
   #endif
   #ifdef COLORS
   varying vec3 vColor;
@@ -151,7 +161,11 @@ export const kFragmentShader = /* glsl */ `
 
   vec3 imageColor() {
     #ifdef IMAGE
-    return texture2D(image, vImagePlace).rgb;
+    // a vertex may move beyond its own tile, but not beyond the parent's
+    vec2 beyond = abs(vImagePlace - 0.5);
+    float parentShare = max(beyond.x, beyond.y) > 0.5 ? 1.0 : vMorph;
+    vec3 own = texture2D(image, vImagePlace).rgb;
+    return mix(own, texture2D(parentImage, vParentPlace).rgb, parentShare);
     #else
     #ifdef COLORS
     return pow(vColor, vec3(1.0 / 2.2));  // glTF's colours are linear light

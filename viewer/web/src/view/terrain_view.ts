@@ -17,7 +17,13 @@ import type {Tile, Tileset} from '../core/tileset';
 import {add, length, subtract, type Vec3} from '../core/vec3';
 import {Sky} from './sky';
 import {setHoldbacks, setMorph, sharedUniforms, type SharedUniforms} from './terrain_material';
-import {borderLines, completeTargets, triangleLines, type TileContent} from './tile_content';
+import {
+  borderLines,
+  completeTargets,
+  lendImage,
+  triangleLines,
+  type TileContent,
+} from './tile_content';
 
 /** What one picture holds. */
 export interface Drawn {
@@ -141,7 +147,9 @@ export class TerrainView {
     for (const tile of frame.cut) {
       if (!isInPicture(tile.box)) continue;
       const content = contentOf(tile);
-      completeTargets(content, tile.parent ? contentOf(tile.parent) : undefined);
+      const parent = tile.parent ? contentOf(tile.parent) : undefined;
+      completeTargets(content, parent);
+      if (content.hasDrape) lendImage(content, parent);
       this.show(content, this.uniformsOf(tile, content, frame));
       ++tiles;
       triangles += content.triangles;

@@ -10,7 +10,7 @@ import {
 } from 'three';
 import {borderOf} from '../core/border';
 import type {GlbTile} from '../core/glb';
-import {imageSlope} from '../core/image_slope';
+import {imageMap, kNoImage, mapOfParent, type ImageMap} from '../core/image_map';
 import {
   targetColors,
   targetNormals,
@@ -18,7 +18,12 @@ import {
   type TileVertices,
 } from '../core/target_vertices';
 import type {Level, Tile} from '../core/tileset';
-import {lineMaterial, terrainMaterial, type SharedUniforms} from './terrain_material';
+import {
+  lineMaterial,
+  setParentImage,
+  terrainMaterial,
+  type SharedUniforms,
+} from './terrain_material';
 import type {Decoded} from './tile_decoder';
 
 /** A tile that is loaded: its integers, and the mesh to draw. */
@@ -28,6 +33,7 @@ export interface TileContent extends TileVertices {
   readonly positions: GlbTile['positions'];
   readonly toTargets: GlbTile['toTargets'];
   readonly indices: GlbTile['indices'];
+  readonly imageMap: ImageMap;
   readonly hasDrape: boolean;
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   /** Lines over it, made when they are first shown. */
@@ -55,8 +61,8 @@ export function makeContent(
   geometry.setIndex(new BufferAttribute(indices, 1));
 
   const texture = image && places ? textureOf(image) : undefined;
-  const slope = places ? imageSlope(positions, places) : ([0, 0, 0, 0] as const);
-  const drape = {image: texture, imageSlope: slope, hasColors: colors !== undefined};
+  const map = places ? imageMap(positions, places) : kNoImage;
+  const drape = {image: texture, imageMap: map, hasColors: colors !== undefined};
   const mesh = fixed(new Mesh(geometry, terrainMaterial(shared, tile, drape)));
   // what the arrays take here and on the card, target normals and colours included
   const arrays = 2 * (2 * positions.byteLength + 2 * normals.byteLength + indices.byteLength);
@@ -66,6 +72,7 @@ export function makeContent(
     bytes: arrays + pixels + more,
     triangles: indices.length / 3,
     stepM: levels[tile.level]!.stepM,
+    imageMap: map,
     hasDrape: texture !== undefined || colors !== undefined,
     ...{origin, positions, toTargets, normals, indices, mesh},
   };
@@ -83,6 +90,17 @@ export function completeTargets(content: TileContent, parent: TileContent | unde
   const above = parent?.mesh.geometry.attributes.vertexColor?.array as Uint8Array | undefined;
   const ends = targets && above ? targetColors(colors, above, targets) : colors;
   geometry.setAttribute('targetColor', new BufferAttribute(ends, 3, true));
+}
+
+/** Gives the mesh the image that it blends into: its own where the parent has none. */
+export function lendImage(content: TileContent, parent: TileContent | undefined): void {
+  const {material} = content.mesh;
+  const above = parent?.mesh.material.uniforms.image!.value as Texture | null | undefined;
+  if (parent && above) {
+    setParentImage(material, above, mapOfParent(parent.imageMap, parent, content));
+  } else if (material.uniforms.image!.value) {
+    setParentImage(material, material.uniforms.image!.value as Texture, content.imageMap);
+  }
 }
 
 const kTriangleColor = new Vector4(0.05, 0.08, 0.12, 0.3);

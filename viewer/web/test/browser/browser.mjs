@@ -7,7 +7,7 @@ import {chromium} from 'playwright-core';
 const kPicture = {width: 640, height: 480};
 const kReadyMs = 120000;
 
-// software rendering, and no traffic of the browser's own
+// no traffic of the browser's own
 const kFlags = [
   '--no-sandbox',
   '--disable-quic',
@@ -15,9 +15,14 @@ const kFlags = [
   '--disable-background-networking',
   '--disable-component-update',
   '--disable-sync',
+];
+const kSoftwareFlags = ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+const kGpuFlags = [
   '--use-gl=angle',
-  '--use-angle=swiftshader',
-  '--enable-unsafe-swiftshader',
+  '--use-angle=vulkan',
+  '--enable-features=Vulkan',
+  '--ignore-gpu-blocklist',
+  '--disable-vulkan-surface',
 ];
 
 let failureCount = 0;
@@ -90,10 +95,11 @@ export async function ready(page) {
   clearTimeout(timer);
 }
 
-/** Runs something in a fresh browser. */
-export async function withBrowser(executablePath, use) {
+/** Runs something in a fresh browser, which renders in software unless `gpu` is true. */
+export async function withBrowser(executablePath, use, {viewport = kPicture, gpu = false} = {}) {
   const profile = await mkdtemp(join(tmpdir(), 'terrane-view-'));
-  const settings = {executablePath, headless: true, args: kFlags, viewport: kPicture};
+  const args = [...kFlags, ...(gpu ? kGpuFlags : kSoftwareFlags)];
+  const settings = {executablePath, headless: true, args, viewport};
   const context = await chromium.launchPersistentContext(profile, settings);
   try {
     await use(context);

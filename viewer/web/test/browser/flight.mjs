@@ -10,6 +10,7 @@
 // in their direction.
 import {parseArgs} from 'node:util';
 import {check, failures, open, ready, withBrowser} from './browser.mjs';
+import {flightPose} from './flight_path.mjs';
 import {passesThroughHole, readDem} from './holes.mjs';
 import {differenceOf, keepPicture, lookAgain, readPicture} from './picture.mjs';
 
@@ -114,18 +115,6 @@ function directionOf({headingDeg, pitchDeg}, right, up) {
   const sum = ahead.map((value, k) => value + right * toRight[k] + up * upwards[k]);
   const size = Math.hypot(...sum);
   return sum.map((value) => value / size);
-}
-
-/** From above one side down to the ground in the middle. */
-function flightPose({min, max}, t) {
-  const at = (k, share) => min[k] + share * (max[k] - min[k]);
-  const size = Math.hypot(max[0] - min[0], max[1] - min[1]);
-  const eye = [
-    at(0, 0.3 + 0.3 * t),
-    at(1, 0.1 + 0.4 * t),
-    max[2] + size * (0.02 + 0.3 * (1 - t) ** 2),
-  ];
-  return {eye, headingDeg: 20 * t, pitchDeg: -40 + 15 * t};
 }
 
 async function flyWithoutWaiting(page) {

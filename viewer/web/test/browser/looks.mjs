@@ -1,7 +1,8 @@
 // Pictures of the looks, the themes and a phone, compared with those in docs/images/viewer.
 //
-//     node looks.mjs --url http://127.0.0.1:8080/ --images docs/images/viewer [--write]
+//     node looks.mjs --url http://127.0.0.1:8080/ --images docs/images/viewer [--imagery] [--write]
 //
+// --imagery takes the look of a tileset with images alone; without it, all others.
 // --write makes the pictures anew: look at each before you keep it. Fonts differ from machine to
 // machine: pictures are compared at a quarter of their size.
 import {mkdir, readFile, writeFile} from 'node:fs/promises';
@@ -13,6 +14,7 @@ const {values: options} = parseArgs({
   options: {
     url: {type: 'string'},
     images: {type: 'string'},
+    imagery: {type: 'boolean', default: false},
     write: {type: 'boolean', default: false},
     chromium: {type: 'string', default: '/usr/bin/chromium'},
   },
@@ -26,6 +28,7 @@ const kLargestMean = 3;
 const kLargestShare = 0.02;
 
 const kDay = {theme: 'light', hour: null, contours: false, wireframe: false, borders: false};
+const kImagery = {imagery: {set: {...kDay, look: 'imagery'}}};
 const kPictures = {
   relief: {set: {...kDay, look: 'relief'}},
   contours: {set: {...kDay, look: 'hillshade', contours: true}},
@@ -92,7 +95,7 @@ async function look(page, name, {set, size = kWide}) {
 async function run(context) {
   const {page} = await open(context, options.url, 1);
   if (options.write) await mkdir(options.images, {recursive: true});
-  for (const [name, picture] of Object.entries(kPictures)) {
+  for (const [name, picture] of Object.entries(options.imagery ? kImagery : kPictures)) {
     // the panel folds itself on a small window, when it opens
     if (picture.size)
       await page.evaluate(() => (document.getElementById('panel-fold').open = false));
