@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Builds squares of a DEM, from small to large, and plots CPU time per sample.
+
+time_per_sample.py TERRANE DEM PICTURE.svg [SIDE ...]     sides in samples, from the DEM's middle
+
+Prints a Markdown table. Samples are those with data; time is that of the process and its threads.
+"""
+
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+SIDES = (1000, 1450, 2000, 2900, 4100, 5800, 8200, 10000)
+WIDTH, HEIGHT, LEFT, BOTTOM, RIGHT, TOP = 560, 320, 60, 44, 20, 20
+
+
+def shape_of(dem):
+    said = json.loads(subprocess.run(["gdalinfo", "-json", dem], check=True,
+                                     capture_output=True, text=True).stdout)
+    return said["size"]
+
+
+def build(terrane, dem, side, folder):
+    """(samples with data, CPU seconds, peak memory in MB, levels)."""
+    columns, rows = shape_of(dem)
+    side_columns, side_rows = min(side, columns), min(side, rows)
+    square, out = folder / "square.tif", folder / "tiles"
+    subprocess.run(["gdal_translate", "-q", "-srcwin", str((columns - side_columns) // 2),
+                    str((rows - side_rows) // 2), str(side_columns), str(side_rows), dem, square],
+                   check=True)
+    process = subprocess.Popen([terrane, "--quiet", "build", square, "--tolerance", "5", "--jobs",
+                                "1", "-o", out], stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    if status != 0:
+        sys.exit(f"a square of {side} could not be built")
+    summary = json.loads((out / "terrane.json").read_text())
+    return (summary["dem"]["samples_with_data"], usage.ru_utime + usage.ru_stime,
+            usage.ru_maxrss / 1024, len(summary["levels"]))
+
+
+def svg(points):
+    """Points (samples, microseconds per sample), samples to a logarithmic scale."""
+    low = math.floor(math.log10(min(x for x, _ in points)))
+    high = math.ceil(math.log10(max(x for x, _ in points)))
+    most = 1.25 * max(y for _, y in points)
+
+    def place(x, y):
+        along = (math.log10(x) - low) / (high - low)
+        return (LEFT + along * (WIDTH - LEFT - RIGHT),
+                HEIGHT - BOTTOM - y / most * (HEIGHT - BOTTOM - TOP))
+
+    (x0, y0), (x1, y1) = place(10 ** low, 0), place(10 ** high, most)
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}" '
+           'font-family="sans-serif" font-size="12"><rect width="100%" height="100%" fill="white"/>',
+           f'<path d="M{x0} {y1}V{y0}H{x1}" fill="none" stroke="black"/>']
+    for power in range(low, high + 1):
+        x = place(10 ** power, 0)[0]
+        label = f"{10 ** power / 1e6:g} M"
+        out.append(f'<text x="{x:.1f}" y="{y0 + 16}" text-anchor="middle">{label}</text>')
+    for k in range(6):
+        y = most * k / 5
+        out.append(f'<text x="{x0 - 6}" y="{place(10 ** low, y)[1] + 4:.1f}" '
+                   f'text-anchor="end">{y:.1f}</text>')
+    out.append(f'<text x="{(x0 + x1) / 2}" y="{HEIGHT - 8}" text-anchor="middle">'
+               'samples with data</text>')
+    out.append(f'<text x="14" y="{(y0 + y1) / 2}" transform="rotate(-90 14 {(y0 + y1) / 2})" '
+               'text-anchor="middle">CPU microseconds per sample</text>')
+    places = [place(x, y) for x, y in points]
+    out.append(f'<polyline points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in places)}" '
+               'fill="none" stroke="#2166ac" stroke-width="2"/>')
+    out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="#2166ac"/>' for x, y in places]
+    return "\n".join(out) + "\n</svg>\n"
+
+
+def main(terrane, dem, picture, *sides):
+    print("| square | samples with data | levels | CPU time | per sample | peak memory |\n"
+          "|---|---|---|---|---|---|", flush=True)
+    points = []
+    for side in map(int, sides or SIDES):
+        with tempfile.TemporaryDirectory() as folder:
+            samples, seconds, memory_mb, levels = build(terrane, dem, side, pathlib.Path(folder))
+        points.append((samples, seconds / samples * 1e6))
+        print(f"| {side} | {samples:,} | {levels} | {seconds:.1f} s | {points[-1][1]:.2f} us | "
+              f"{memory_mb:.0f} MB |", flush=True)
+        pathlib.Path(picture).write_text(svg(points))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
