@@ -23,8 +23,8 @@ constexpr double kShareOfSnapping = 0.125;
 constexpr double kMostSnap_cells = 1.0 / 256;
 
 // where places are rounded: lines lie on parts of cells this wide, and stay apart by half of that.
-// The lattice's steps are a sixteenth of the tolerance and 1/477 cell at most
-// (tiler/tile/lattice.h): two ends of an altitude together are rounded by 1.4 of them, and half a
+// The lattice's steps are a sixteenth of the tolerance and 1/256 cell at most
+// (tiler/build.cpp): two ends of an altitude together are rounded by 1.4 of them, and half a
 // part is 2
 constexpr double kShareOfSimplificationIfRounded = 0.125;
 constexpr double kShareOfPart = 0.25;

@@ -23,9 +23,16 @@
 namespace terrane::tiler {
 namespace {
 
-// between a shore and a sample beside it the ground may be a wall, where what plan is rounded by
-// becomes so much more in height
-constexpr double kStepsPerTolerance = 16, kStepsPerToleranceWithLines = 128;
+/// Between a shore and a sample beside it the ground may be a wall, where what plan is rounded by
+/// becomes so much more in height; and lines are 1/128 cell apart at least (ingest/features.h),
+/// twice what a step may be.
+double steps_per_tolerance(const BuildOptions& options) {
+  constexpr double kSteps = 16, kStepsWithLines = 128, kStepsPerCell = 256;
+  const GridFeatures& features = options.features;
+  if (features.lines.empty()) return kSteps;
+  const double cell_m = std::min(features.column_m, features.row_m);
+  return std::max(kStepsWithLines, kStepsPerCell * options.tolerance_m / cell_m);
+}
 
 std::string hash_hex(std::string_view text) {
   std::uint64_t hash = 14695981039346656037U;  // FNV-1a
@@ -81,8 +88,7 @@ class Build {
         const BuildOptions& options, const std::filesystem::path& out, Progress& progress)
       : pyramid_(heights.shape(), options.tile_cells, options.levels_per_octave),
         world_(place, heights.shape()),
-        lattice_(pyramid_, world_, statistics, options.tolerance_m,
-                 options.features.lines.empty() ? kStepsPerTolerance : kStepsPerToleranceWithLines),
+        lattice_(pyramid_, world_, statistics, options.tolerance_m, steps_per_tolerance(options)),
         source_{heights, world_, pyramid_, lattice_, options.effort},
         is_mirrored_(is_mirrored(world_, heights.shape())),
         folder_(out),

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace terrane::hierarchy {
@@ -110,6 +111,32 @@ TEST_P(RandomLines, StayEdgesOfASoundTriangulation) {
   }
   for (std::size_t i = 0; i + 1 < ends.size(); i += 2) work.join(ends[i], ends[i + 1]);
   expect_sound(work);
+  work.make_delaunay();
+  expect_sound(work);
+}
+
+TEST_P(RandomLines, WithoutLinesEveryCircleOfDelaunaysIsEmpty) {
+  std::mt19937 random(GetParam());
+  CellTriangulation work = cell();
+  for (int i = 0; i < 12; ++i) {
+    const auto x = static_cast<std::int32_t>(random() % (kSide + 1));
+    work.insert({x, -static_cast<std::int32_t>(random() % (kSide + 1))});
+  }
+  work.make_delaunay();
+  expect_sound(work);
+  for (const auto& [a, b, c] : work.triangles()) {
+    const auto& points = work.points();
+    // the circumcentre, by its formula in Cartesian coordinates about a
+    const double bx = points[b].x - points[a].x, by = points[b].y - points[a].y;
+    const double cx = points[c].x - points[a].x, cy = points[c].y - points[a].y;
+    const double d = 2 * (bx * cy - by * cx);
+    const double x = (cy * (bx * bx + by * by) - by * (cx * cx + cy * cy)) / d;
+    const double y = (bx * (cx * cx + cy * cy) - cx * (bx * bx + by * by)) / d;
+    const double radius = std::hypot(x, y);
+    for (const GridPoint p : points) {
+      EXPECT_GE(std::hypot(p.x - points[a].x - x, p.y - points[a].y - y), radius * (1 - 1e-9));
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomLines, ::testing::Range(0U, 200U));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 
 #include "../test_meshes.h"
 
@@ -124,6 +125,30 @@ TEST(TriangulateWithLines, ALineOutsideTheDataIsLeftOut) {
   const HeightGrid grid = slope();
   const FeatureLine line{{{-1, 1.5}, {0, 1.5}}, {}};
   EXPECT_TRUE(triangulate_with_lines(grid, grid.window, {&line, 1}).edges.empty());
+}
+
+TEST(TriangulateWithLines, TwoWindowsThatShareABorderHaveTheSameVerticesOnIt) {
+  const HeightGrid grid = grid_of(9, 5, [](auto c, auto r) { return 10.0 * c + r * r; });
+  // crosses column 4, touches it from the right alone, and runs along it
+  const std::vector<FeatureLine> lines{
+      {{{3.5, 0.5}, {4, 0.75}, {4.5, 1}}, {}},
+      {{{4.5, 1.25}, {4, 1.5}, {4.5, 1.75}}, 7.0},
+      {{{4, 2}, {4, 2.5}, {4, 3}}, {}},
+  };
+  const Window sides[] = {{0, 0, 5, 5}, {4, 0, 5, 5}};
+  std::set<std::tuple<double, double, double>> on_border[2];
+  for (int k = 0; k < 2; ++k) {
+    const LinedTriangles mesh = triangulate_with_lines(grid, sides[k], lines);
+    const std::vector<BorderPlace> places = places_of(mesh, sides[k]);
+    for (std::size_t v = mesh.samples.size(); v < places.size(); ++v) {
+      if (places[v].column != 4) continue;
+      on_border[k].emplace(places[v].column, places[v].row,
+                           mesh.line_vertices[v - mesh.samples.size()].height_m);
+    }
+  }
+  EXPECT_EQ(on_border[0].size(), 3U);
+  EXPECT_EQ(on_border[0], on_border[1]);
+  EXPECT_TRUE(on_border[0].count({4, 1.5, 7}));
 }
 
 }  // namespace
