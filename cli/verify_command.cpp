@@ -10,10 +10,12 @@
 #include "cli/terminal_progress.h"
 #include "cli/unpacked_output.h"
 #include "core/errors.h"
+#include "ingest/read_polygon.h"
 #include "ingest/scan.h"
 #include "tiler/files/whole_file.h"
 #include "tiler/verify/verify.h"
 #include "tiler/verify/verify_terrain.h"
+#include "tiler/verify/water_samples.h"
 
 namespace terrane::cli {
 namespace {
@@ -55,6 +57,32 @@ Verdict verdict_of(const Report& report) {
   return {report.holds(), to_text(report), to_json(report)};
 }
 
+/// The polygons as their files have them, read anew and not laid on any grid.
+std::vector<verify::WaterArea> water_areas(const std::vector<std::string>& sources) {
+  std::vector<verify::WaterArea> areas;
+  for (const std::string& source : sources) {
+    for (ingest::Polygon& polygon : ingest::read_layer_polygons(source).polygons) {
+      verify::WaterArea& area = areas.emplace_back();
+      area.shores = std::move(polygon.holes);
+      area.shores.push_back(std::move(polygon.outline));
+    }
+  }
+  return areas;
+}
+
+/// Is what the tiles are held against flat in water, and the DEM elsewhere?
+void check_water(const BuildSettings& settings, const ingest::Dem& levelled, Progress& progress,
+                 verify::VerifyReport& report) {
+  if (settings.features.water.empty()) return;
+  const auto dem = ingest::open_dem(settings.dem, settings.ingest, progress);
+  const verify::WaterFindings found =
+      verify::check_water(dem->heights(), levelled.heights(), dem->place(),
+                          water_areas(settings.features.water), settings.build.tolerance_m);
+  report.samples_under_water = found.under_water;
+  report.water_samples_wrong = found.wrong;
+  report.problems.insert(report.problems.end(), found.problems.begin(), found.problems.end());
+}
+
 Verdict verify_folder(const std::filesystem::path& out, const VerifyCommand& command,
                       Progress& progress) {
   check_finished(out);
@@ -72,7 +100,9 @@ Verdict verify_folder(const std::filesystem::path& out, const VerifyCommand& com
                     out.string(), settings.geodetic.format));
   }
   if (!settings.geodetic.is_geodetic()) {
-    return verdict_of(verify::verify(out, dem->heights(), dem->place(), options, progress));
+    auto report = verify::verify(out, dem->heights(), dem->place(), options, progress);
+    check_water(settings, *dem, progress, report);
+    return verdict_of(report);
   }
   NoProgress quietly;  // what was assumed was said by the build
   const auto geoid = geoid_of(*dem, settings.geodetic, quietly);

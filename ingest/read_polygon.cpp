@@ -7,6 +7,8 @@
 
 #include "core/errors.h"
 #include "ingest/gdal_scope.h"
+#include "ingest/layer_place.h"
+#include "ingest/vector_layer.h"
 
 namespace terrane::ingest {
 namespace {
@@ -73,6 +75,15 @@ PolygonFile read_polygons(const std::string& file) {
   if (result.polygons.empty()) {
     throw InputError(fmt::format("{}: holds no polygon. Give the area as a polygon", file));
   }
+  return result;
+}
+
+PolygonFile read_layer_polygons(const std::string& source) {
+  VectorLayer layer = read_vector_layer(source, WantedGeometry::kPolygons);
+  PolygonFile result;
+  result.is_geographic = !layer.crs.IsEmpty();
+  if (result.is_geographic) place_on_earth(layer);
+  for (const OGRGeometryUniquePtr& part : layer.parts) collect(*part, result.polygons);
   return result;
 }
 

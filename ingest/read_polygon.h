@@ -26,4 +26,10 @@ struct PolygonFile {
 /// \throws InputError if the file cannot be read, or holds no polygon.
 PolygonFile read_polygons(const std::string& file);
 
+/// Reads all polygons of one layer as they are, but for the way to longitudes and latitudes, which
+/// is that of a DEM with the layer's CRS.
+/// \param source  what GDAL opens as vectors, with ":LAYER" after it where it has several.
+/// \throws InputError if it cannot be read, or holds other geometries.
+PolygonFile read_layer_polygons(const std::string& source);
+
 }  // namespace terrane::ingest

@@ -288,8 +288,7 @@ class StrictCollapse {
     }
     for (const VertexId to : stencil_.polygon) {
       const GridPoint there = vertices_[index(to)].place.plan;
-      candidates_.push_back(
-          {part_of_way(middle.plan, there, kPartsBesideMiddle), middle.height_m});
+      candidates_.push_back({part_of_way(middle.plan, there, kPartsBesideMiddle), middle.height_m});
     }
   }
 

@@ -100,6 +100,7 @@ class LakeTiles(unittest.TestCase):
         out, _ = self.build("--tolerance", tolerance_m, *options)
         status, said, _ = terrane("--quiet", "verify", out)
         self.assertEqual(status, 0, said)
+        self.assertIn(" 0 samples at another height", said)
         lake = Lake(self.folder)
         for number, level in enumerate(json.loads((out / "terrane.json").read_text())["levels"]):
             mesh = self.folder / "level.obj"

@@ -29,7 +29,7 @@ bool LevelReport::holds() const {
 }
 
 bool VerifyReport::holds() const {
-  return !levels.empty() &&
+  return !levels.empty() && water_samples_wrong == 0 &&
          std::all_of(levels.begin(), levels.end(), [](const auto& level) { return level.holds(); });
 }
 

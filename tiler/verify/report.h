@@ -68,6 +68,8 @@ struct VerifyReport {
   std::vector<LevelReport> levels;    ///< level 0, the finest, first
   std::vector<std::string> problems;  ///< one line each: which tile, what, where; not all if many
   std::int64_t problems_left_out = 0;
+  std::int64_t samples_under_water = 0;  ///< that are clearly in water; see water_samples.h
+  std::int64_t water_samples_wrong = 0;  ///< that the reference has not at their height
 
   /// True if every invariant holds on every level.
   bool holds() const;

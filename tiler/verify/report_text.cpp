@@ -121,6 +121,10 @@ std::string to_text(const VerifyReport& report) {
   print_seams(report, out);
   print_morphs(report, out);
   print_listing(report, out);
+  if (report.samples_under_water > 0 || report.water_samples_wrong > 0) {
+    fmt::format_to(out, "\n{} samples in water, {} samples at another height than their own\n",
+                   report.samples_under_water, report.water_samples_wrong);
+  }
   text += '\n';
   for (const std::string& problem : report.problems) fmt::format_to(out, "{}\n", problem);
   if (report.problems_left_out > 0) {
@@ -133,6 +137,8 @@ std::string to_text(const VerifyReport& report) {
 std::string to_json(const VerifyReport& report) {
   Json object = {{"holds", report.holds()}, {"levels", Json::array()}};
   for (const LevelReport& level : report.levels) object["levels"].push_back(to_json(level));
+  object["samples_under_water"] = report.samples_under_water;
+  object["water_samples_wrong"] = report.water_samples_wrong;
   object["problems"] = report.problems;
   object["problems_left_out"] = report.problems_left_out;
   return object.dump(2) + "\n";
