@@ -35,6 +35,16 @@ TEST_F(WaterMaskTest, RowsRunFromTheNorthAndColumnsFromTheWest) {
   EXPECT_EQ(std::count(mask.begin(), mask.end(), '\xff'), 64 * 128);
 }
 
+TEST_F(WaterMaskTest, IsToldFromThatOfAnotherShoreByItsFingerprint) {
+  const auto mask_of = [this](const std::string& name, std::string text) {
+    return open_water_mask({folder_.write_text(name, text)})->fingerprint();
+  };
+  EXPECT_EQ(mask_of("same.geojson", kLake), mask_->fingerprint());
+  std::string moved = kLake;
+  moved.replace(moved.find("[2,3]"), 5, "[2,4]");
+  EXPECT_NE(mask_of("moved.geojson", moved), mask_->fingerprint());
+}
+
 TEST_F(WaterMaskTest, OneByteWhereAllIsTheSame) {
   EXPECT_EQ(mask_->bytes(10, 10, 11, 11), std::string(1, '\0'));
   EXPECT_EQ(mask_->bytes(1.2, 1.2, 1.4, 1.4), std::string(1, '\xff'));
