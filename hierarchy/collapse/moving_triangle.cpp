@@ -290,8 +290,11 @@ class MovingTriangle::Sweep {
     TERRANE_LANES_INLINE Doubt run() const {
       for (std::size_t first = begin; first < samples.count; first += kLanes) {
         const Eight eight = samples.eight(first);
-        const LaneMask is_cleared = (abs(eight.height_m) <= sweep.highest_m_) &
-                                    are_sound<kSplitsAtOnce>(sweep.passages(eight), sweep.limits_);
+        // samples without data are as good as cleared
+        const LaneMask is_void = eight.height_m != eight.height_m;
+        const LaneMask is_cleared =
+            is_void | ((abs(eight.height_m) <= sweep.highest_m_) &
+                       are_sound<kSplitsAtOnce>(sweep.passages(eight), sweep.limits_, is_void));
         if (!any(~is_cleared)) continue;
         Doubt doubt{first, 0};
         for (std::size_t k = 0; k < kLanes; ++k) doubt.samples |= (is_cleared[k] ? 0U : 1U) << k;
@@ -342,9 +345,11 @@ class MovingTriangle::Sweep {
     return all;
   }
 
+  /// \param known  samples that need no look.
   template <int kSplits>
-  TERRANE_LANES_INLINE static LaneMask are_sound(const Passages& passages, const Limits& limits) {
-    LaneMask sound = passages.have_room(limits) | passages.are_outside(limits);
+  TERRANE_LANES_INLINE static LaneMask are_sound(const Passages& passages, const Limits& limits,
+                                                 const LaneMask& known) {
+    LaneMask sound = known | passages.have_room(limits) | passages.are_outside(limits);
     if constexpr (kSplits > 0) {
       if (!any(~sound)) return sound;
       Passages second = passages, first;
@@ -353,9 +358,11 @@ class MovingTriangle::Sweep {
       Limits after = limits, before;
       before.room = split(after.room);
       before.outside = split(after.outside);
-      LaneMask halves = are_sound<kSplits - 1>(first, before);
-      if (any(halves & ~sound)) halves &= are_sound<kSplits - 1>(second, after);
-      sound |= halves;
+      const LaneMask at_first = are_sound<kSplits - 1>(first, before, sound);
+      // what fails in the first half is in doubt, whatever comes
+      if (any(at_first & ~sound)) {
+        sound = at_first & are_sound<kSplits - 1>(second, after, sound | ~at_first);
+      }
     }
     return sound;
   }

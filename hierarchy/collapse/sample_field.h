@@ -64,16 +64,39 @@ struct FieldPoint {
 /// A straight line between two points.
 using FieldSide = std::pair<const FieldPoint*, const FieldPoint*>;
 
+/// A side from top to bottom, so that rows find its columns without a division.
+struct FallingSide {
+  double top, bottom, top_column, bottom_column, per_row;
+
+  explicit FallingSide(const FieldSide& side) {
+    const auto [upper, lower] = side.first->row < side.second->row
+                                    ? std::pair{side.first, side.second}
+                                    : std::pair{side.second, side.first};
+    top = upper->row;
+    bottom = lower->row;
+    top_column = upper->column;
+    bottom_column = lower->column;
+    per_row = bottom > top ? (bottom_column - top_column) / (bottom - top) : 0;
+  }
+  FallingSide() = default;
+};
+
+/// The most sides that for_each_span_between() takes: all lines between six points.
+inline constexpr std::size_t kMostSides = 15;
+
 /// Calls visit(row, first_column, last_column) for each row of samples between the leftmost and the
 /// rightmost of some sides that go all around, or nearer to them than \p slack_cells, in columns
 /// and rows. Stops and returns false as soon as visit does.
 template <class Visit>
 bool for_each_span_between(std::span<const FieldSide> sides, const GridShape& shape,
                            double slack_cells, Visit&& visit) {
+  std::array<FallingSide, kMostSides> memory;
+  const std::span<FallingSide> falling = std::span(memory).first(sides.size());
   double top = std::numeric_limits<double>::infinity(), bottom = -top;
-  for (const auto& [p, q] : sides) {
-    top = std::min({top, p->row, q->row});
-    bottom = std::max({bottom, p->row, q->row});
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    falling[k] = FallingSide(sides[k]);
+    top = std::min(top, falling[k].top);
+    bottom = std::max(bottom, falling[k].bottom);
   }
   const auto first_row =
       std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(top - slack_cells)));
@@ -85,16 +108,14 @@ bool for_each_span_between(std::span<const FieldSide> sides, const GridShape& sh
     const double below = static_cast<double>(row) + slack_cells;
     double left = std::numeric_limits<double>::infinity();
     double right = -left;
-    for (const auto& [p, q] : sides) {
+    for (const FallingSide& side : falling) {
       // the part of the side between the lines above and below the row
-      const auto [upper, lower] = p->row < q->row ? std::pair{p, q} : std::pair{q, p};
-      if (lower->row < above || upper->row > below) continue;
-      const double per_row =
-          lower->row > upper->row ? (lower->column - upper->column) / (lower->row - upper->row) : 0;
+      if (side.bottom < above || side.top > below) continue;
       const double at_top =
-          above <= upper->row ? upper->column : upper->column + (above - upper->row) * per_row;
-      const double at_bottom =
-          below >= lower->row ? lower->column : upper->column + (below - upper->row) * per_row;
+          above <= side.top ? side.top_column : side.top_column + (above - side.top) * side.per_row;
+      const double at_bottom = below >= side.bottom
+                                   ? side.bottom_column
+                                   : side.top_column + (below - side.top) * side.per_row;
       left = std::min({left, at_top, at_bottom});
       right = std::max({right, at_top, at_bottom});
     }
@@ -199,7 +220,7 @@ class HullSides {
   std::span<const FieldSide> sides() const { return std::span(sides_).first(count_); }
 
  private:
-  std::array<FieldSide, 15> sides_;
+  std::array<FieldSide, kMostSides> sides_;
   std::size_t count_ = 0;
 };
 
