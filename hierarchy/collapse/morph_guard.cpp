@@ -1,6 +1,10 @@
 #include "hierarchy/collapse/morph_guard.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -11,6 +15,9 @@ namespace {
 
 // of the altitude that triangles have at either end: they may become thinner in between
 constexpr double kShareOfAltitude = 0.25;
+
+// with more samples than that under a triangle, all threads look at those that move
+constexpr std::size_t kManySamples = 100;
 
 struct PlanVector {
   double x, y;
@@ -69,6 +76,8 @@ MorphGuard::MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
       next_member_(finer_.size()),
       first_incident_(finer_.size() + 1, 0),
       incident_(triangles_.size() * 3),
+      has_large_triangles_(std::max(field.heights_m.size(), field.kept.size()) >
+                           kManySamples * triangles_.size()),
       checked_(triangles_.size(), 0) {
   for (std::uint32_t v = 0; v < finer_.size(); ++v) {
     target_[v] = VertexId{v};
@@ -111,20 +120,43 @@ bool MorphGuard::is_sound(const Corners& triangle, std::span<const VertexId> cor
 }
 
 bool MorphGuard::allows(std::span<const VertexId> core, const Place& target) {
+  list_moved(core);
+  const auto is_sound_at = [&](std::size_t i) {
+    return is_sound(triangles_[moved_[i]], core, target);
+  };
+  if (!has_large_triangles_) {
+    for (std::size_t i = 0; i < moved_.size(); ++i) {
+      if (!is_sound_at(i)) return false;
+    }
+    return true;
+  }
+  std::atomic<bool> is_sound_so_far = true;
+  // isolated: else a thread that waits here may begin another tile
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(std::size_t{0}, moved_.size(), [&](std::size_t i) {
+      if (is_sound_so_far.load(std::memory_order_relaxed) && !is_sound_at(i)) {
+        is_sound_so_far = false;
+      }
+    });
+  });
+  return is_sound_so_far;
+}
+
+/// The fine triangles at the fine vertices of a core, each once.
+void MorphGuard::list_moved(std::span<const VertexId> core) {
   ++stamp_;
+  moved_.clear();
   for (const VertexId corner : core) {
     const auto first = static_cast<std::uint32_t>(corner);
     std::uint32_t fine = first;
     do {
       for (std::uint32_t i = first_incident_[fine]; i < first_incident_[fine + 1]; ++i) {
         const std::uint32_t t = incident_[i];
-        if (std::exchange(checked_[t], stamp_) == stamp_) continue;
-        if (!is_sound(triangles_[t], core, target)) return false;
+        if (std::exchange(checked_[t], stamp_) != stamp_) moved_.push_back(t);
       }
       fine = next_member_[fine];
     } while (fine != first);
   }
-  return true;
 }
 
 void MorphGuard::join(std::span<const VertexId> core, VertexId kept) {

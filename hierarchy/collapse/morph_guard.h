@@ -40,6 +40,7 @@ class MorphGuard {
   VertexId target_of(std::uint32_t fine) const { return target_[fine]; }
 
  private:
+  void list_moved(std::span<const VertexId> core);
   bool is_sound(const Corners& triangle, std::span<const VertexId> core, const Place& target) const;
 
   std::vector<Place> finer_;
@@ -51,7 +52,8 @@ class MorphGuard {
   std::vector<VertexId> target_;
   std::vector<std::uint32_t> next_member_;  // members of a coarse vertex: a ring through itself
   std::vector<std::uint32_t> first_incident_, incident_;
-  std::vector<std::uint32_t> checked_;
+  bool has_large_triangles_;
+  std::vector<std::uint32_t> checked_, moved_;
   std::uint32_t stamp_ = 0;
 };
 
