@@ -126,12 +126,14 @@ class TileBuild {
     for (int tries = 1;; ++tries) {
       const StrictResult result =
           hierarchy::collapse_strictly(input, reference_.field(), frame_, finer, options);
-      const auto [errors, noted] = measure(measured_meshes(input, finer, finer_points, result),
-                                           samples_, frame_, step_m(), kNotedShare * tolerance_m);
-      const double worst_m = std::ranges::max(errors, {}, &MeasuredError::max_m).max_m;
-      if (worst_m <= tolerance_m) return {written_mesh(result.mesh, errors[0]), targets(result)};
+      const Measured measured =
+          measure_until_over(measured_meshes(input, finer, finer_points, result), tolerance_m);
+      const double worst_m = worst_of(measured);
+      if (worst_m <= tolerance_m) {
+        return {written_mesh(result.mesh, measured.errors[0]), targets(result)};
+      }
       if (tries == kMostTries) refuse(worst_m, tolerance_m);
-      if (reference_.learn(noted)) continue;
+      if (reference_.learn(measured.noted)) continue;
       // gently at first: most are over by a thousandth
       options.tolerance_m *= std::min(1 - 0.005 * (1 << tries), 0.999 * tolerance_m / worst_m);
     }
@@ -147,6 +149,24 @@ class TileBuild {
       vertices[i]->place = frame_.place_of(
           source_.lattice.of_sample(positions[i], plumbs[i], heights_m[i], tile_.level));
     }
+  }
+
+  static double worst_of(const Measured& measured) {
+    return std::ranges::max(measured.errors, {}, &MeasuredError::max_m).max_m;
+  }
+
+  /// The first mesh alone as long as the tile's reference has to learn from it, then all of them.
+  Measured measure_until_over(std::span<const MeasuredMesh> meshes, double tolerance_m) const {
+    const auto measure_some = [&](std::span<const MeasuredMesh> some) {
+      return measure(some, samples_, frame_, step_m(), kNotedShare * tolerance_m);
+    };
+    if (!reference_.field().is_reduced() || meshes.size() == 1) return measure_some(meshes);
+    Measured all = measure_some(meshes.first(1));
+    if (worst_of(all) > tolerance_m) return all;
+    const Measured blends = measure_some(meshes.subspan(1));
+    all.errors.insert(all.errors.end(), blends.errors.begin(), blends.errors.end());
+    all.noted.insert(all.noted.end(), blends.noted.begin(), blends.noted.end());
+    return all;
   }
 
   TileMesh written_mesh(const TerrainMesh& terrain, const MeasuredError& error) const {
