@@ -8,8 +8,9 @@
 namespace terrane::hierarchy {
 namespace {
 
-// samples_ may grow to so many times the samples before the gaps in it are closed
-constexpr std::size_t kMostGaps = 2;
+// samples_ may grow to so many times the samples before the gaps in it are closed: the more the
+// faster, but the caches are small, and so is memory where there are millions
+constexpr std::size_t kMostGaps = 2, kMostGapsIfFew = 4, kFew = 200'000;
 
 // of so many samples one after the other under a triangle, the highest over it and the lowest are
 // keen: half as many as there are for a triangle
@@ -21,6 +22,8 @@ constexpr std::size_t kFewestForKeen = 6;
 FieldPoint plan_of(const TerrainVertex& vertex) {
   return {column_of(vertex.place.plan), row_of(vertex.place.plan), 0};
 }
+
+bool is_inner(const TerrainVertex& vertex) { return vertex.kind == VertexKind::kInterior; }
 
 }  // namespace
 
@@ -37,8 +40,12 @@ CoveredSamples::CoveredSamples(const SampleField& field, std::span<const Terrain
   constexpr double kOnEdge_cells = 1e-7;
   for (const double slack_cells : {kOnEdge_cells, field.slack_cells}) {
     if (found.size() == all) break;
+    const bool is_beside = slack_cells != kOnEdge_cells;
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
       const auto [a, b, c] = triangles[t];
+      if (is_beside && is_inner(vertices[a]) && is_inner(vertices[b]) && is_inner(vertices[c])) {
+        continue;
+      }
       for_each_sample(plan_of(vertices[a]), plan_of(vertices[b]), plan_of(vertices[c]), field,
                       slack_cells, [&](std::size_t number, const FieldSample& sample) {
                         if (is_claimed[number]) return true;
@@ -56,7 +63,7 @@ CoveredSamples::CoveredSamples(const SampleField& field, std::span<const Terrain
     first += std::exchange(list.count, 0);
   }
   count_ = found.size();
-  samples_.reserve(kMostGaps * count_);
+  samples_.reserve(most_with_gaps());
   samples_.resize(count_);
   for (std::size_t s = 0; s < count_; ++s) {
     List& list = lists_[TriangleId{owner[s]}];
@@ -95,7 +102,7 @@ void CoveredSamples::share_out(std::span<const TriangleId> triangles,
                                std::span<const CoveredSample> samples, std::size_t keen_count,
                                std::span<const std::uint32_t> sector) {
   for (const TriangleId t : triangles) clear(t);
-  if (samples_.size() + samples.size() > kMostGaps * count_) compact();
+  if (samples_.size() + samples.size() > most_with_gaps()) compact();
   for (std::size_t k = 0; k < samples.size(); ++k) ++lists_[triangles[sector[k]]].count;
   for (std::size_t k = 0; k < keen_count; ++k) ++lists_[triangles[sector[k]]].keen;
   std::size_t first = samples_.size();
@@ -111,9 +118,13 @@ void CoveredSamples::share_out(std::span<const TriangleId> triangles,
   }
 }
 
+std::size_t CoveredSamples::most_with_gaps() const {
+  return count_ * (count_ < kFew ? kMostGapsIfFew : kMostGaps);
+}
+
 void CoveredSamples::compact() {
   std::vector<CoveredSample> kept;
-  kept.reserve(kMostGaps * count_);
+  kept.reserve(most_with_gaps());
   for (List& list : lists_) {
     const auto begin = samples_.begin() + static_cast<std::ptrdiff_t>(list.first);
     list.first = kept.size();

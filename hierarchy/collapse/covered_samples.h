@@ -57,6 +57,7 @@ class CoveredSamples {
     std::uint32_t keen = 0;  // so many of them come first
   };
   void choose_keen(std::span<const TerrainVertex> vertices, std::span<const Corners> triangles);
+  std::size_t most_with_gaps() const;
   /// Leaves out what no list holds any more.
   void compact();
 

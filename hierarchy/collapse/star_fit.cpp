@@ -180,10 +180,14 @@ struct StarJudge::Fit {
   float tolerance_m, smallest_altitude_cells;
   StarHeights& heights;
   StarJudge& judge;
+  Known& known;
 
   TERRANE_LANES_INLINE StarVerdict run() const {
-    Sectors sectors(star.sector_count(), judge.sectors_memory_);
-    if (!sectors.set(star, centre, smallest_altitude_cells)) return StarVerdict::kNotStarShaped;
+    Sectors sectors(star.sector_count(), known.memory);
+    if (known.star_number != judge.star_number_) {
+      if (!sectors.set(star, centre, smallest_altitude_cells)) return StarVerdict::kNotStarShaped;
+      known.star_number = judge.star_number_;
+    }
     Interval interval;
     const Contrary& contrary = judge.contrary_;
     for (std::size_t i = 0; i < contrary.count; ++i) {
@@ -225,8 +229,10 @@ struct StarJudge::Fit {
 StarJudge::StarJudge() : StarJudge(has_wide_lanes()) {}
 
 StarVerdict StarJudge::fit(const Star& star, Star::Centre centre, float tolerance_m,
-                           float smallest_altitude_cells, StarHeights& heights) {
-  const Fit fit{star, centre, tolerance_m, smallest_altitude_cells, heights, *this};
+                           float smallest_altitude_cells, StarHeights& heights,
+                           std::size_t number) {
+  if (number >= known_.size()) known_.resize(number + 1);
+  const Fit fit{star, centre, tolerance_m, smallest_altitude_cells, heights, *this, known_[number]};
   return is_wide_ ? run_wide(fit) : run_portable(fit);
 }
 
@@ -238,7 +244,7 @@ struct StarJudge::Guess {
   StarJudge& judge;
 
   TERRANE_LANES_INLINE bool run() const {
-    Sectors sectors(star.sector_count(), judge.sectors_memory_);
+    Sectors sectors(star.sector_count(), judge.guess_.memory);
     if (!sectors.set(star, centre, 0)) return false;
     for (std::size_t first = 0; first < star.sample_count(); first += kLanes) {
       const Lanes x = load(star.sample_x() + first) - centre.x;

@@ -36,16 +36,21 @@ class StarJudge {
   ///
   /// \param smallest_altitude_cells  of any triangle of the star, in plan.
   /// \param[out] heights             written if feasible.
+  /// \param number  of the centre among those tried since begin(): the next time with the same
+  ///                number it is the same centre, and samples alone have been added to the star.
   StarVerdict fit(const Star& star, Star::Centre centre, float tolerance_m,
-                  float smallest_altitude_cells, StarHeights& heights);
+                  float smallest_altitude_cells, StarHeights& heights, std::size_t number = 0);
 
   /// Is the star around a written place within the tolerance of every sample under it? In double
   /// precision.
   /// \pre the polygon sees the place.
   bool holds(const Star& star, const Place& centre, double tolerance_m);
 
-  /// Tells that another star comes.
-  void begin() { contrary_.count = 0; }
+  /// Tells that another star comes, or other centres.
+  void begin() {
+    contrary_.count = 0;
+    ++star_number_;
+  }
 
   /// For each sample of the star the sector that it is in, around the place that last held.
   std::span<const std::uint32_t> sectors(const Star& star) const {
@@ -70,9 +75,18 @@ class StarJudge {
   struct Fit;
   struct Guess;
 
+  /// The sectors around a centre.
+  struct Known {
+    std::uint64_t star_number = 0;
+    std::vector<float> memory;  // see Sectors in the source
+  };
+
   bool is_wide_;
+  std::uint64_t star_number_ = 1;
   Contrary contrary_;
-  std::vector<float> sectors_memory_, bounds_memory_;  // see Sectors and Bounds in the source
+  std::vector<Known> known_;
+  Known guess_;
+  std::vector<float> bounds_memory_;  // see Bounds in the source
   std::vector<ExactSector> exact_sectors_;
   std::vector<std::uint32_t> sectors_;
 };

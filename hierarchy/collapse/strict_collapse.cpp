@@ -311,13 +311,12 @@ class StrictCollapse {
   std::optional<Place> best_candidate() {
     if (star_.sample_count() > 0) {
       if (!fit_candidates()) return std::nullopt;
-      judge_.begin();
     }
     star_.gather_rest(samples_);
     const bool is_judged_by_keen = star_.keen_count() > 0;
     if (!is_judged_by_keen) fit_candidates();
     while (Candidate* best = least_squared_error()) {
-      if (!is_judged_by_keen || fit(best->plan, best->heights)) {
+      if (!is_judged_by_keen || fit(*best)) {
         if (const std::optional<Place> place = written(*best)) return place;
       }
       best->is_rejected = true;
@@ -335,15 +334,15 @@ class StrictCollapse {
   bool fit_candidates() {
     bool is_any_left = false;
     for (Candidate& candidate : candidates_) {
-      if (!candidate.is_rejected) candidate.is_rejected = !fit(candidate.plan, candidate.heights);
+      if (!candidate.is_rejected) candidate.is_rejected = !fit(candidate);
       is_any_left = is_any_left || !candidate.is_rejected;
     }
     return is_any_left;
   }
 
   std::optional<Place> onto_line(const Place& place) {
-    StarHeights heights;
-    if (!fit(place.plan, heights) || !is_star_shaped(place.plan)) return std::nullopt;
+    candidates_.assign(1, {place.plan, place.height_m});
+    if (!fit(candidates_[0]) || !is_star_shaped(place.plan)) return std::nullopt;
     refusal_ = Collapsibility::kOverTolerance;
     if (!judge_.holds(star_, place, tolerance_m_) || !blends(place)) return std::nullopt;
     return place;
@@ -356,10 +355,11 @@ class StrictCollapse {
     return false;
   }
 
-  bool fit(GridPoint plan, StarHeights& heights) {
+  bool fit(Candidate& candidate) {
     const StarVerdict verdict =
-        judge_.fit(star_, star_.centre(plan), static_cast<float>(tolerance_m_),
-                   smallest_altitude_cells_, heights);
+        judge_.fit(star_, star_.centre(candidate.plan), static_cast<float>(tolerance_m_),
+                   smallest_altitude_cells_, candidate.heights,
+                   static_cast<std::size_t>(&candidate - candidates_.data()));
     if (verdict != StarVerdict::kNotStarShaped) refusal_ = Collapsibility::kOverTolerance;
     return verdict == StarVerdict::kFeasible;
   }

@@ -47,7 +47,7 @@ class Octagon {
   double origin_m() const { return star_.origin().height_m; }
 
   StarVerdict fit(GridPoint centre, float tolerance_m, StarHeights& heights) {
-    return judge_.fit(star_, star_.centre(centre), tolerance_m, 0, heights);
+    return judge_.fit(star_, star_.centre(centre), tolerance_m, 0, heights, tried_++);
   }
   bool holds(GridPoint centre, double height_m, double tolerance_m) {
     return judge_.holds(star_, {centre, height_m, {}}, tolerance_m);
@@ -78,6 +78,7 @@ class Octagon {
   CoveredSamples samples_;
   Star star_;
   StarJudge judge_;
+  std::size_t tried_ = 0;
 };
 
 TEST(StarJudge, FindsThePeakOfAPyramidExactly) {
