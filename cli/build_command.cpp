@@ -45,9 +45,16 @@ void refuse_native_options(const BuildCommand& command, const BuildSettings& set
                               : settings.features.water_height_m ? "--water-height"
                               : !settings.drape.images.empty()   ? "--texture"
                                                                  : nullptr;
-  if (useless == nullptr) return;
-  throw ConfigError(
-      fmt::format("{}: is for --scheme native alone. Leave it away, or add that", useless));
+  if (useless != nullptr) {
+    throw ConfigError(
+        fmt::format("{}: is for --scheme native alone. Leave it away, or add that", useless));
+  }
+  if (!settings.geodetic.has_water_masks() && !settings.features.water.empty()) {
+    throw ConfigError(
+        fmt::format("--water: --format {} has no water masks. Leave it away, or use "
+                    "--format quantized-mesh",
+                    settings.geodetic.format));
+  }
 }
 
 BuildSettings resolve(const BuildCommand& command) {

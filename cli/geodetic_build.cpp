@@ -12,6 +12,8 @@
 namespace terrane::cli {
 namespace {
 
+constexpr const char* k3dTilesTerrain = "3dtiles-terrain";
+
 /// A file that goes with its owner.
 struct TemporaryFile {
   std::filesystem::path path;
@@ -87,9 +89,10 @@ void add_geodetic_options(CLI::App& command, GeodeticOptionsGiven& given) {
   command.add_option("--scheme", given.scheme,
                      "Tiling: native, the DEM's own grid; or geodetic, the global quadtree of "
                      "longitudes and latitudes, to which the DEM is resampled [native]");
-  command.add_option("--format", given.format,
-                     "What to write: 3dtiles (native); quantized-mesh (geodetic) [3dtiles, "
-                     "quantized-mesh]");
+  command.add_option(
+      "--format", given.format,
+      "What to write: 3dtiles (native); quantized-mesh or 3dtiles-terrain (geodetic) "
+      "[3dtiles, quantized-mesh]");
   command.add_option("--geoid", given.geoid,
                      "Geodetic: what the heights are over: egm96, a file with a grid, or none: the "
                      "WGS 84 ellipsoid [as the DEM's CRS says, else none]");
@@ -116,10 +119,13 @@ void check(const GeodeticSettings& settings) {
     throw ConfigError(
         fmt::format("--scheme {}: is not known. Use native or geodetic", settings.scheme));
   }
-  const char* const wanted = settings.is_geodetic() ? "quantized-mesh" : "3dtiles";
-  if (settings.format != wanted) {
-    throw ConfigError(fmt::format("--format {}: is not one of --scheme {}. Use {}", settings.format,
-                                  settings.scheme, wanted));
+  const bool is_known = settings.is_geodetic() ? settings.format == "quantized-mesh" ||
+                                                     settings.format == k3dTilesTerrain
+                                               : settings.format == "3dtiles";
+  if (!is_known) {
+    throw ConfigError(fmt::format(
+        "--format {}: is not one of --scheme {}. Use {}", settings.format, settings.scheme,
+        settings.is_geodetic() ? "quantized-mesh or 3dtiles-terrain" : "3dtiles"));
   }
   if (settings.is_geodetic()) return;
   const char* const useless = !settings.geoid.empty() ? "--geoid"
@@ -163,9 +169,13 @@ tiler::BuildResult build_geodetic(const ingest::Dem& dem, const HeightStatistics
   const auto geoid = geoid_of(dem, settings, progress);
   const ingest::ResampleOptions options{
       .zoom = settings.max_zoom, .fill_m = settings.fill_m, .geoid = geoid.get()};
-  tiler::GeodeticOptions geodetic{.tolerance_m = build.tolerance_m,
+  tiler::GeodeticOptions geodetic{.format = settings.format == k3dTilesTerrain
+                                                ? tiler::TerrainFormat::k3dTiles
+                                                : tiler::TerrainFormat::kQuantizedMesh,
+                                  .tolerance_m = build.tolerance_m,
                                   .jobs = build.jobs,
                                   .source = described(settings, water, geoid.get()),
+                                  .resampling = {},
                                   .attribution = build.format.attribution};
   if (!water.empty()) {
     const auto mask = ingest::open_water_mask(water);

@@ -24,6 +24,7 @@ struct GeodeticSettings {
   double fill_m = 0;
 
   bool is_geodetic() const { return scheme == "geodetic"; }
+  bool has_water_masks() const { return format == "quantized-mesh"; }
 };
 
 /// The command line's part of it; what is not given stays as it is.

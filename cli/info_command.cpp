@@ -29,6 +29,7 @@ void print_row(std::string_view name, const std::string& value) {
 /// Terrain tiles of the geodetic scheme.
 void describe_terrain(const nlohmann::json& json) {
   print_row("written by", json.at("generator").get<std::string>());
+  print_row("tiles", json.value("tiles", "quantized-mesh"));
   print_row("terrain", json.at("source").get<std::string>());
   print_row("resampling", fmt::format("at most {:.2f} m off the DEM's samples, RMS {:.2f} m",
                                       json.at("resampling").at("max_error_m").get<double>(),

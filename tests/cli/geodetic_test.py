@@ -93,11 +93,31 @@ class Geodetic(unittest.TestCase):
         self.assertEqual(status, 0, said)
         self.assertEqual(bytes_below(self.folder / "first"), bytes_below(self.folder / "again"))
 
+    def test_the_same_meshes_as_3d_tiles(self):
+        self.build("mesh")
+        status, _, said = self.build("tiles", "--format", "3dtiles-terrain")
+        self.assertEqual(status, 0, said)
+        mesh, tiles = (json.loads((self.folder / name / "terrane.json").read_text())
+                       for name in ("mesh", "tiles"))
+        self.assertEqual([zoom["triangles"] for zoom in mesh["zooms"]],
+                         [zoom["triangles"] for zoom in tiles["zooms"]])
+        tileset = json.loads((self.folder / "tiles/tileset.json").read_text())
+        self.assertEqual(len(tileset["root"]["children"]), 2)
+        self.assertEqual(len(list((self.folder / "tiles").rglob("*.glb"))),
+                         sum(zoom["tiles"] for zoom in tiles["zooms"]))
+        self.assertIn("up to date", self.build("tiles", "--format", "3dtiles-terrain")[1])
+        # another format in the same folder leaves nothing of the first
+        self.build("tiles")
+        self.assertEqual(bytes_below(self.folder / "tiles").keys(),
+                         bytes_below(self.folder / "mesh").keys())
+
     def test_refuses_what_cannot_be_in_one_line(self):
         crs = ["--crs", "EPSG:4326"]
         geodetic = [*crs, "--scheme", "geodetic"]
         self.refuse(USAGE, [*crs, "--scheme", "mercator"], "mercator", "geodetic")
         self.refuse(USAGE, [*geodetic, "--format", "3dtiles"], "quantized-mesh")
+        self.refuse(USAGE, [*geodetic, "--format", "3dtiles-terrain", "--water", self.dem],
+                    "--water", "quantized-mesh")
         self.refuse(USAGE, [*crs, "--geoid", "egm96"], "--geoid", "--scheme geodetic")
         self.refuse(USAGE, [*geodetic, "--geoid", "egm1066"], "egm1066", "egm96")
         self.refuse(USAGE, [*geodetic, "--max-zoom", "99"], "--max-zoom 99")

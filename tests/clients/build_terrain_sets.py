@@ -21,6 +21,7 @@ ETOPO5 = pathlib.Path(os.environ.get("TERRANE_ETOPO5", "/usr/share/ferret-vis/da
 # name: DEM and options of `terrane build`
 TERRAIN_SETS = {
     "trinidad": ("trinidad", "--geoid egm96 --tolerance 8"),
+    "trinidad-3dtiles": ("trinidad", "--geoid egm96 --tolerance 8 --format 3dtiles-terrain"),
     "crater_lake": ("crater_lake/crater_garland_nad27_utm10.tif",
                     f"--geoid egm96 --tolerance 4 --water "
                     f"{DATA / 'crater_lake/crater_lake_shoreline.gpkg'}"),
@@ -58,6 +59,7 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     trinidad = make_trinidad(folder)
     raise_to_the_ellipsoid(folder / "trinidad_points.json")
+    shutil.copyfile(folder / "trinidad_points.json", folder / "trinidad-3dtiles_points.json")
     build_earth(folder)
     for name, (dem, options) in TERRAIN_SETS.items():
         if dem != "trinidad" and not (DATA / dem).exists():

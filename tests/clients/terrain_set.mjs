@@ -1,4 +1,5 @@
 // A terrain set as it lies on disk, decoded by loaders.gl.
+import {existsSync} from 'node:fs';
 import {readFile, readdir} from 'node:fs/promises';
 import {join} from 'node:path';
 import {gunzipSync} from 'node:zlib';
@@ -6,10 +7,11 @@ import decode from './node_modules/@loaders.gl/terrain/dist/lib/decode-quantized
 
 export const kLast = 32767;
 
-/** The folders of terrain sets in a folder. */
-export async function terrainSets(folder) {
+/** The folders of terrain sets in a folder that hold a file, as quantized-mesh does a layer.json. */
+export async function terrainSets(folder, file = 'layer.json') {
   const entries = await readdir(folder, {withFileTypes: true});
-  return entries.filter((entry) => entry.isDirectory()).map(({name}) => name).sort();
+  const names = entries.filter((entry) => entry.isDirectory()).map(({name}) => name).sort();
+  return names.filter((name) => existsSync(join(folder, name, file)));
 }
 
 /** @returns {layer, summary, tiles: Map from "z/x/y" to a decoded tile with its z, x and y} */

@@ -6,7 +6,7 @@
 
 #include "core/geodetic_grid.h"
 #include "core/progress.h"
-#include "tiler/geodetic/quantized_mesh.h"
+#include "tiler/geodetic/terrain_tile.h"
 #include "tiler/tile/tile_mesh.h"
 
 namespace terrane::tiler {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -12,14 +13,14 @@
 #include "tiler/files/whole_file.h"
 #include "tiler/geodetic/build_band.h"
 #include "tiler/geodetic/layer_json.h"
+#include "tiler/geodetic/quantized_mesh.h"
+#include "tiler/geodetic/terrain_glb.h"
+#include "tiler/geodetic/terrain_tileset.h"
 
 namespace terrane::tiler {
 namespace {
 
 namespace fs = std::filesystem;
-
-// that of CesiumJS for a tile of zoom 0 (a height map of 65 posts): it halves with each zoom
-constexpr double kLevelZeroError_m = 77067.34;
 
 // share of it that a tile with posts of its own may be off: a globe must look like one where
 // nothing finer is
@@ -34,8 +35,18 @@ std::string hash_hex(std::string_view text) {
 }
 
 fs::path summary_of(const fs::path& out) { return out / "terrane.json"; }
-fs::path layer_of(const fs::path& out) { return out / "layer.json"; }
 fs::path work_of(const fs::path& out) { return out / ".work"; }
+
+/// What clients open.
+fs::path entrance_of(const fs::path& out, TerrainFormat format) {
+  return out / (format == TerrainFormat::k3dTiles ? "tileset.json" : "layer.json");
+}
+
+/// Where the tiles of a zoom are, in any format.
+std::array<fs::path, 3> folders_of(const fs::path& out, int zoom) {
+  const std::string name = fmt::format("{}", zoom);
+  return {out / name, out / "west" / name, out / "east" / name};
+}
 
 /// One zoom of what is written.
 struct ZoomSummary {
@@ -131,7 +142,23 @@ class GeodeticBuild {
     zooms_.insert(zooms_.end(), zooms.begin(), zooms.end());
   }
 
-  std::int64_t write(TerrainTile tile) const {
+  std::int64_t write(const TerrainTile& tile) const {
+    return options_.format == TerrainFormat::k3dTiles ? write_glb(tile)
+                                                      : write_quantized_mesh(tile);
+  }
+
+  fs::path facts_of_tile(const TmsTile& tile) const {
+    return work_of(out_) / "facts" / path_of(tile);
+  }
+
+  std::int64_t write_glb(const TerrainTile& tile) const {
+    const std::string glb = encode_terrain_glb(tile, options_.attribution);
+    write_whole_file(out_ / glb_path_of(tile.tile), glb);
+    write_facts(facts_of(tile), facts_of_tile(tile.tile));
+    return static_cast<std::int64_t>(glb.size());
+  }
+
+  std::int64_t write_quantized_mesh(TerrainTile tile) const {
     tile.metadata = tile_metadata(tile.tile, available_);
     if (options_.water) {
       const TmsBounds b = bounds_of(tile.tile);
@@ -148,18 +175,31 @@ class GeodeticBuild {
     const fs::path key_file = work_of(out_) / "key";
     if (fs::exists(key_file, error) && read_whole_file(key_file) == key_) return;
     fs::remove(summary_of(out_), error);
-    fs::remove(layer_of(out_), error);
-    for (int zoom = 0; zoom < 40; ++zoom) fs::remove_all(out_ / fmt::format("{}", zoom), error);
+    for (const auto format : {TerrainFormat::kQuantizedMesh, TerrainFormat::k3dTiles}) {
+      fs::remove(entrance_of(out_, format), error);
+    }
+    for (int zoom = 0; zoom < 40; ++zoom) {
+      for (const fs::path& folder : folders_of(out_, zoom)) fs::remove_all(folder, error);
+    }
+    fs::remove_all(out_ / "subtrees", error);
     fs::remove_all(work_of(out_), error);
     write_whole_file(key_file, key_);
   }
 
   BuildResult finish() const {
-    const TerrainLayer layer{.version = key_,
-                             .attribution = options_.attribution,
-                             .available = available_,
-                             .has_water = options_.water != nullptr};
-    write_whole_file(layer_of(out_), layer_json(layer));
+    if (options_.format == TerrainFormat::k3dTiles) {
+      for (const OutputFile& file : terrain_tileset(
+               available_, options_.attribution,
+               [this](const TmsTile& tile) { return read_facts(facts_of_tile(tile)); })) {
+        write_whole_file(out_ / file.path, file.content);
+      }
+    } else {
+      const TerrainLayer layer{.version = key_,
+                               .attribution = options_.attribution,
+                               .available = available_,
+                               .has_water = options_.water != nullptr};
+      write_whole_file(entrance_of(out_, options_.format), layer_json(layer));
+    }
     write_whole_file(summary_of(out_), summary_json());
     std::error_code error;
     fs::remove_all(work_of(out_), error);
@@ -184,6 +224,9 @@ class GeodeticBuild {
     json["format"] = "terrane-geodetic/1";
     json["generator"] = TERRANE_GENERATOR;
     json["key"] = key_;
+    json["tiles"] =
+        options_.format == TerrainFormat::k3dTiles ? "3dtiles-terrain" : "quantized-mesh";
+    json["bounds"] = bounds_deg(tiles_);
     json["source"] = options_.source;
     json["dem"] = {{"samples_with_data", statistics_.samples_with_data},
                    {"fingerprint", statistics_.fingerprint}};
@@ -216,20 +259,25 @@ class GeodeticBuild {
 }  // namespace
 
 std::string geodetic_key(const HeightStatistics& statistics, const GeodeticOptions& options) {
-  return hash_hex(fmt::format("geodetic 2 {} {} {} {} {} {}", TERRANE_GENERATOR,
-                              options.tolerance_m, statistics.fingerprint, options.source,
-                              options.attribution, options.water_fingerprint));
+  return hash_hex(fmt::format("geodetic 2 {} {} {} {} {} {} {}", TERRANE_GENERATOR,
+                              static_cast<int>(options.format), options.tolerance_m,
+                              statistics.fingerprint, options.source, options.attribution,
+                              options.water_fingerprint));
 }
 
 bool is_finished(const fs::path& out, const std::string& key) {
   try {
     const auto summary = nlohmann::json::parse(read_whole_file(summary_of(out)));
-    if (summary.at("key") != key || !fs::exists(layer_of(out))) return false;
+    const auto format = summary.at("tiles") == "3dtiles-terrain" ? TerrainFormat::k3dTiles
+                                                                 : TerrainFormat::kQuantizedMesh;
+    if (summary.at("key") != key || !fs::exists(entrance_of(out, format))) return false;
     for (const auto& zoom : summary.at("zooms")) {
       std::int64_t bytes = 0;
-      const fs::path folder = out / fmt::format("{}", zoom.at("zoom").get<int>());
-      for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-        if (entry.is_regular_file()) bytes += static_cast<std::int64_t>(entry.file_size());
+      for (const fs::path& folder : folders_of(out, zoom.at("zoom").get<int>())) {
+        if (!fs::exists(folder)) continue;
+        for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+          if (entry.is_regular_file()) bytes += static_cast<std::int64_t>(entry.file_size());
+        }
       }
       if (bytes != zoom.at("bytes").get<std::int64_t>()) return false;
     }

@@ -19,7 +19,14 @@ struct ResamplingFacts {
   double rms_error_m = 0;
 };
 
+/// What terrain tiles are written as.
+enum class TerrainFormat {
+  kQuantizedMesh,  ///< with a layer.json
+  k3dTiles         ///< glb tiles and subtrees, for Cesium3DTilesTerrainProvider
+};
+
 struct GeodeticOptions {
+  TerrainFormat format = TerrainFormat::kQuantizedMesh;
   /// Largest vertical distance of the finest zoom to any post of its grid, in metres; doubles with
   /// each coarser zoom.
   double tolerance_m = 1;
@@ -32,7 +39,7 @@ struct GeodeticOptions {
   std::string source;
   ResamplingFacts resampling;
   std::string attribution;
-  /// The water mask of a tile, as TerrainTile has it; none without water.
+  /// The water mask of a tile, as TerrainTile has it; none without water. For quantized-mesh.
   std::function<std::string(double west_deg, double south_deg, double east_deg, double north_deg)>
       water;
   std::string water_fingerprint;  ///< changes whenever the mask does
@@ -45,7 +52,7 @@ std::string geodetic_key(const HeightStatistics& statistics, const GeodeticOptio
 bool is_finished(const std::filesystem::path& out, const std::string& key);
 
 /// Builds the tiles of the geodetic quadtree from its roots to the finest zoom and writes them as
-/// quantized-mesh with a layer.json (docs/formats.md).
+/// quantized-mesh with a layer.json, or as 3D Tiles (docs/formats.md).
 ///
 /// Guarantees: neighbours of a zoom hold the same border vertices and decode to equal heights
 /// there. From the finest zoom up to that at which four tiles at most hold the whole DEM, each tile

@@ -49,17 +49,16 @@ std::vector<Range> below(const TmsTile& tile, const std::vector<Range>& all) {
   return result;
 }
 
-ordered_json bounds(const GeodeticTiles& tiles) {
+}  // namespace
+
+std::array<double, 4> bounds_deg(const GeodeticTiles& tiles) {
   const double side_deg = GeodeticZoom{tiles.zoom}.tile_deg();
   const auto meridian = [&](std::int64_t x) { return -180 + static_cast<double>(x) * side_deg; };
   const auto parallel = [&](std::int64_t y) { return 90 - static_cast<double>(y) * side_deg; };
   double west = meridian(tiles.x), east = meridian(tiles.x + tiles.columns);
-  // across 180 degrees there are no bounds that clients agree on but all
   if (east > 180) west = -180, east = 180;
   return {west, parallel(tiles.y + tiles.rows), east, parallel(tiles.y)};
 }
-
-}  // namespace
 
 std::string layer_json(const TerrainLayer& layer) {
   ordered_json json;
@@ -76,7 +75,7 @@ std::string layer_json(const TerrainLayer& layer) {
   json["metadataAvailability"] = kMetadataZooms;
   json["minzoom"] = 0;
   json["maxzoom"] = layer.available.size() - 1;
-  json["bounds"] = bounds(layer.available.back());
+  json["bounds"] = bounds_deg(layer.available.back());
   json["available"] = ordered_json::array();
   for (const GeodeticTiles& tiles : layer.available) {
     json["available"].push_back(json_of(ranges(tiles)));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,10 @@ struct TerrainLayer {
   std::vector<GeodeticTiles> available;  ///< by zoom, from 0
   bool has_water = false;
 };
+
+/// West, south, east and north of tiles in degrees; all longitudes where they cross 180 degrees, as
+/// there are no bounds that clients agree on.
+std::array<double, 4> bounds_deg(const GeodeticTiles& tiles);
 
 /// layer.json as CesiumJS reads it: TMS, EPSG:4326, quantized-mesh 1.0.
 ///

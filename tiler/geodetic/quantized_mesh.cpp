@@ -1,15 +1,11 @@
 #include "tiler/geodetic/quantized_mesh.h"
 
-#include <meshoptimizer.h>
-
-#include <GeographicLib/Geocentric.hpp>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstring>
 
 #include "tiler/geodetic/grid_lattice.h"
-#include "tiler/geodetic/horizon.h"
 
 namespace terrane::tiler {
 namespace {
@@ -40,46 +36,15 @@ class Bytes {
   std::string bytes_;
 };
 
-/// Brings the triangles into an order that a vertex cache likes, and the vertices into that of
-/// their first use, as the coding of indices wants it.
-TerrainTile in_order_of_use(const TerrainTile& tile) {
-  std::vector<std::uint32_t> indices;
-  for (const auto& corners : tile.triangles) {
-    indices.insert(indices.end(), corners.begin(), corners.end());
-  }
-  meshopt_optimizeVertexCache(indices.data(), indices.data(), indices.size(), tile.vertices.size());
-  std::vector<std::uint32_t> remap(tile.vertices.size());
-  const std::size_t used = meshopt_optimizeVertexFetchRemap(remap.data(), indices.data(),
-                                                            indices.size(), tile.vertices.size());
-  TerrainTile ordered = tile;
-  ordered.vertices.resize(used);
-  ordered.normals.resize(used);
-  for (std::size_t v = 0; v < remap.size(); ++v) {
-    if (remap[v] == ~std::uint32_t{0}) continue;
-    ordered.vertices[remap[v]] = tile.vertices[v];
-    ordered.normals[remap[v]] = tile.normals[v];
-  }
-  for (std::size_t t = 0; t < ordered.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) ordered.triangles[t][k] = remap[indices[3 * t + k]];
-  }
-  return ordered;
-}
-
 void add_header(Bytes& bytes, const TerrainTile& tile) {
-  const std::vector<Eigen::Vector3d> ecef = ecef_of(tile);
-  const Sphere sphere = sphere_around(ecef);
+  const TerrainFacts facts = facts_of(tile);
   const HeightRange range = height_range(tile);
-  const TmsBounds bounds = bounds_of(tile.tile);
-  Eigen::Vector3d middle;
-  GeographicLib::Geocentric::WGS84().Forward((bounds.south_deg + bounds.north_deg) / 2,
-                                             (bounds.west_deg + bounds.east_deg) / 2, 0, middle.x(),
-                                             middle.y(), middle.z());
-  bytes.add(sphere.centre);
+  bytes.add(facts.sphere.centre);
   bytes.add(range.min_m);
   bytes.add(range.max_m);
-  bytes.add(sphere.centre);
-  bytes.add(sphere.radius_m);
-  bytes.add(horizon_occlusion_point(ecef, middle));
+  bytes.add(facts.sphere.centre);
+  bytes.add(facts.sphere.radius_m);
+  bytes.add(facts.horizon);
 }
 
 /// Differences to the vertex before, zigzag: 0, -1, 1, -2, ... as 0, 1, 2, 3, ...
@@ -119,32 +84,14 @@ void add_triangles(Bytes& bytes, const TerrainTile& tile) {
   }
 }
 
-/// The vertices on one border, in order along it.
-template <class Index, class On, class Along>
-void add_border(Bytes& bytes, const TerrainTile& tile, On is_on, Along along) {
-  std::vector<std::uint32_t> border;
-  for (std::uint32_t v = 0; v < tile.vertices.size(); ++v) {
-    if (is_on(tile.vertices[v])) border.push_back(v);
-  }
-  std::ranges::sort(border, {}, [&](std::uint32_t v) { return along(tile.vertices[v]); });
-  bytes.add(static_cast<std::uint32_t>(border.size()));
-  for (const std::uint32_t v : border) bytes.add(static_cast<Index>(v));
-}
-
 template <class Index>
 void add_indices(Bytes& bytes, const TerrainTile& tile) {
-  using Vertex = TerrainTile::Vertex;
-  const auto u = [](const Vertex& vertex) { return vertex.u; };
-  const auto v = [](const Vertex& vertex) { return vertex.v; };
   add_triangles<Index>(bytes, tile);
-  add_border<Index>(
-      bytes, tile, [](const Vertex& a) { return a.u == 0; }, v);
-  add_border<Index>(
-      bytes, tile, [](const Vertex& a) { return a.v == 0; }, u);
-  add_border<Index>(
-      bytes, tile, [](const Vertex& a) { return a.u == kTileSteps; }, v);
-  add_border<Index>(
-      bytes, tile, [](const Vertex& a) { return a.v == kTileSteps; }, u);
+  const TerrainBorders borders = borders_of(tile);
+  for (const auto* border : {&borders.west, &borders.south, &borders.east, &borders.north}) {
+    bytes.add(static_cast<std::uint32_t>(border->size()));
+    for (const std::uint32_t v : *border) bytes.add(static_cast<Index>(v));
+  }
 }
 
 /// Two bytes a normal: the octahedron that the sphere is projected onto, unfolded to a square.
@@ -196,23 +143,6 @@ HeightRange height_range(const TerrainTile& tile) {
                     ? range.min_m
                     : static_cast<float>(metres(low.height * range.per_step + kTileSteps));
   return range;
-}
-
-std::vector<Eigen::Vector3d> ecef_of(const TerrainTile& tile) {
-  const TmsBounds bounds = bounds_of(tile.tile);
-  std::vector<Eigen::Vector3d> ecef;
-  ecef.reserve(tile.vertices.size());
-  for (const TerrainTile::Vertex& vertex : tile.vertices) {
-    const auto part = [](std::int32_t step, double from, double to) {
-      return from + (to - from) * step / static_cast<double>(kTileSteps);
-    };
-    Eigen::Vector3d& at = ecef.emplace_back();
-    GeographicLib::Geocentric::WGS84().Forward(
-        part(vertex.v, bounds.south_deg, bounds.north_deg),
-        part(vertex.u, bounds.west_deg, bounds.east_deg),
-        static_cast<double>(vertex.height) * tile.height_step_m, at.x(), at.y(), at.z());
-  }
-  return ecef;
 }
 
 std::string encode_quantized_mesh(const TerrainTile& given) {

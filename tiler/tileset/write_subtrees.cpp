@@ -2,88 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
-#include <cstring>
+#include "tiler/tileset/subtree_bytes.h"
 
 namespace terrane::tiler {
 namespace {
 
 using nlohmann::ordered_json;
 
-static_assert(std::endian::native == std::endian::little, "subtrees are little-endian");
-
-/// From 3 to 5 levels, so that the last subtrees are as full as can be; 4 where that is the same.
-int best_levels_per_subtree(int levels) {
-  if (levels <= 5) return levels;
-  const auto missing = [levels](int per_subtree) {
-    return (per_subtree - levels % per_subtree) % per_subtree;
-  };
-  return std::min({4, 5, 3}, [&](int a, int b) { return missing(a) < missing(b); });
-}
-
-/// The bits of both numbers in turn, those of x in the even places.
-std::int64_t morton(std::int64_t x, std::int64_t y) {
-  std::int64_t code = 0;
-  for (int bit = 0; bit < 31; ++bit) {
-    code |= ((x >> bit & 1) << (2 * bit)) | ((y >> bit & 1) << (2 * bit + 1));
-  }
-  return code;
-}
-
-/// Tiles on the levels above \p depth of a full quadtree.
-std::int64_t tiles_above(int depth) { return ((std::int64_t{1} << (2 * depth)) - 1) / 3; }
-
-/// Collects buffer views, each on a multiple of eight bytes.
-class Binary {
- public:
-  template <class T>
-  int add(const std::vector<T>& values) {
-    bytes_.resize((bytes_.size() + 7) / 8 * 8);
-    views_.push_back(
-        {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", values.size() * sizeof(T)}});
-    const auto* begin = reinterpret_cast<const char*>(values.data());
-    bytes_.append(begin, values.size() * sizeof(T));
-    return static_cast<int>(views_.size()) - 1;
-  }
-
-  const ordered_json& views() const { return views_; }
-  std::string padded() const {
-    std::string bytes = bytes_;
-    bytes.resize((bytes.size() + 7) / 8 * 8);
-    return bytes;
-  }
-
- private:
-  ordered_json views_ = ordered_json::array();
-  std::string bytes_;
-};
-
-/// Which of some tiles are there: a constant where that is all or none.
-class Availability {
- public:
-  explicit Availability(std::int64_t size)
-      : bits_(static_cast<std::size_t>((size + 7) / 8)), size_(size) {}
-
-  void set(std::int64_t index) {
-    bits_[static_cast<std::size_t>(index / 8)] |= static_cast<unsigned char>(1 << (index % 8));
-    ++count_;
-  }
-  std::int64_t count() const { return count_; }
-
-  ordered_json json(Binary& binary) const {
-    if (count_ == 0 || count_ == size_) return {{"constant", count_ == 0 ? 0 : 1}};
-    return {{"bitstream", binary.add(bits_)}, {"availableCount", count_}};
-  }
-
- private:
-  std::vector<unsigned char> bits_;
-  std::int64_t size_;
-  std::int64_t count_ = 0;
-};
-
 /// One row for each tile, in their order.
-ordered_json property_table(const std::vector<const TileRecord*>& records, Binary& binary) {
+ordered_json property_table(const std::vector<const TileRecord*>& records, SubtreeBuffers& binary) {
   std::vector<double> boxes, errors_m;
   std::vector<std::uint32_t> triangles, skirts, bytes;
   for (const TileRecord* record : records) {
@@ -100,18 +27,6 @@ ordered_json property_table(const std::vector<const TileRecord*>& records, Binar
                          {"skirt_triangles", {{"values", binary.add(skirts)}}},
                          {"bytes", {{"values", binary.add(bytes)}}}};
   return table;
-}
-
-void append_word(std::string& bytes, std::uint64_t word) {
-  bytes.append(reinterpret_cast<const char*>(&word), sizeof word);
-}
-
-std::string pack(std::string json, const std::string& binary) {
-  json.resize((json.size() + 7) / 8 * 8, ' ');
-  std::string subtree("subt\1\0\0\0", 8);
-  append_word(subtree, json.size());
-  append_word(subtree, binary.size());
-  return subtree + json + binary;
 }
 
 }  // namespace
@@ -186,7 +101,7 @@ std::vector<TileId> Subtrees::tiles_in_order(const TileId& subtree, int depth) c
 }
 
 std::string Subtrees::encode(const TileId& subtree) const {
-  Availability tiles(tiles_above(levels_per_subtree_));
+  SubtreeAvailability tiles(tiles_above(levels_per_subtree_));
   std::vector<const TileRecord*> there;
   for (int depth = 0; depth < levels_per_subtree_; ++depth) {
     std::int64_t index = tiles_above(depth);
@@ -199,14 +114,14 @@ std::string Subtrees::encode(const TileId& subtree) const {
       ++index;
     }
   }
-  Availability below(std::int64_t{1} << (2 * levels_per_subtree_));
+  SubtreeAvailability below(std::int64_t{1} << (2 * levels_per_subtree_));
   std::int64_t index = 0;
   for (const TileId& tile : tiles_in_order(subtree, levels_per_subtree_)) {
     if (by_id_.contains(tile)) below.set(index);
     ++index;
   }
 
-  Binary binary;
+  SubtreeBuffers binary;
   ordered_json json;
   json["propertyTables"] = ordered_json::array({property_table(there, binary)});
   json["tileMetadata"] = 0;
@@ -217,7 +132,7 @@ std::string Subtrees::encode(const TileId& subtree) const {
   const std::string bytes = binary.padded();
   json["buffers"] = ordered_json::array({{{"byteLength", bytes.size()}}});
   json["bufferViews"] = binary.views();
-  return pack(json.dump(), bytes);
+  return pack_subtree(json.dump(), bytes);
 }
 
 }  // namespace terrane::tiler

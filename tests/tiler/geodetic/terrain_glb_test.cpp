@@ -1,0 +1,93 @@
+#include "tiler/geodetic/terrain_glb.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "tiler/geodetic/grid_lattice.h"
+
+namespace terrane::tiler {
+namespace {
+
+constexpr auto kEnd = static_cast<std::int32_t>(kTileSteps);
+
+/// Four triangles around a summit, over 5 to 6 degrees east and 44 to 45 north or so.
+TerrainTile pyramid() {
+  TerrainTile tile{.tile = {8, 263, 190}, .height_step_m = 0.5};
+  tile.vertices = {
+      {0, 0, 10}, {kEnd, 0, 20}, {kEnd, kEnd, 30}, {0, kEnd, 40}, {16000, 16000, 4000}};
+  tile.normals.assign(5, Eigen::Vector3f(0.6F, 0, 0.8F));
+  tile.triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+  return tile;
+}
+
+struct Glb {
+  nlohmann::json json;
+  std::string binary;
+
+  explicit Glb(const std::string& bytes) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, bytes.data() + 12, 4);
+    json = nlohmann::json::parse(bytes.substr(20, length));
+    binary = bytes.substr(20 + length + 8);
+  }
+
+  template <class T>
+  std::vector<T> values(int accessor, std::size_t components) const {
+    const auto& about = json["accessors"][accessor];
+    const std::size_t offset = json["bufferViews"][about["bufferView"].get<int>()]["byteOffset"];
+    std::vector<T> result(about["count"].get<std::size_t>() * components);
+    std::memcpy(result.data(), binary.data() + offset, result.size() * sizeof(T));
+    return result;
+  }
+};
+
+TEST(TerrainGlb, PositionsAndTheNodesMatrixAreEarthCentredOnceYIsTurnedUp) {
+  const TerrainTile tile = in_order_of_use(pyramid());
+  const Glb glb(encode_terrain_glb(tile, "somebody"));
+  EXPECT_EQ(glb.json["asset"]["copyright"], "somebody");
+  const auto& primitive = glb.json["meshes"][0]["primitives"][0];
+  const auto at = glb.values<float>(primitive["attributes"]["POSITION"], 3);
+  const auto matrix = glb.json["nodes"][0]["matrix"].get<std::array<double, 16>>();
+  const std::vector<Eigen::Vector3d> ecef = ecef_of(tile);
+  ASSERT_EQ(at.size(), 15U);
+  for (std::size_t v = 0; v < 5; ++v) {
+    const Eigen::Vector3d turned(at[3 * v] + matrix[12], at[3 * v + 1] + matrix[13],
+                                 at[3 * v + 2] + matrix[14]);
+    // CesiumJS's Axis.Y_UP_TO_Z_UP: (x, y, z) to (x, -z, y). Floats of up to 128 km are exact to
+    // 2^-8 m
+    const Eigen::Vector3d off = Eigen::Vector3d(turned.x(), -turned.z(), turned.y()) - ecef[v];
+    EXPECT_LE(off.cwiseAbs().maxCoeff(), 1.0 / 256);
+  }
+}
+
+TEST(TerrainGlb, ListsTheBordersClockwise) {
+  const TerrainTile tile = in_order_of_use(pyramid());
+  const Glb glb(encode_terrain_glb(tile, ""));
+  const auto& edges = glb.json["meshes"][0]["primitives"][0]["extensions"]["CESIUM_tile_edges"];
+  const auto height = [&](const char* side, std::size_t k) {
+    return tile.vertices[glb.values<std::uint16_t>(edges[side], 1).at(k)].height;
+  };
+  EXPECT_EQ(height("left", 0), 10);  // from the south
+  EXPECT_EQ(height("left", 1), 40);
+  EXPECT_EQ(height("top", 0), 40);  // from the west
+  EXPECT_EQ(height("top", 1), 30);
+  EXPECT_EQ(height("right", 0), 30);  // from the north
+  EXPECT_EQ(height("right", 1), 20);
+  EXPECT_EQ(height("bottom", 0), 20);  // from the east
+  EXPECT_EQ(height("bottom", 1), 10);
+}
+
+TEST(TerrainFacts, HaveTheHeightsOfTheVertices) {
+  const TerrainFacts facts = facts_of(pyramid());
+  EXPECT_EQ(facts.min_height_m, 5);
+  EXPECT_EQ(facts.max_height_m, 2000);
+  for (const Eigen::Vector3d& at : ecef_of(pyramid())) {
+    EXPECT_LE((at - facts.sphere.centre).norm(), facts.sphere.radius_m);
+  }
+}
+
+}  // namespace
+}  // namespace terrane::tiler
