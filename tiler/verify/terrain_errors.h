@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "core/georeference.h"
 #include "core/height_source.h"
 #include "core/progress.h"
 #include "tiler/verify/terrain_layer.h"
+#include "tiler/verify/undulation.h"
 
 namespace terrane::verify {
 
@@ -20,9 +20,6 @@ struct TerrainErrors {
   std::int64_t over_tolerance = 0;
   LonLat worst;  ///< where the largest error is
 };
-
-/// How high the surface that a DEM's heights are over lies above the ellipsoid, in metres.
-using Undulation = std::function<double(const LonLat&)>;
 
 /// Measures every zoom at every sample of the DEM that has a height, as flat triangles between
 /// Earth-centred places, along the ellipsoid's normal.

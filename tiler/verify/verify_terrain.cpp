@@ -13,6 +13,7 @@
 #include <set>
 
 #include "core/errors.h"
+#include "tiler/verify/terrain_errors.h"
 #include "tiler/verify/terrain_examination.h"
 
 namespace terrane::verify {

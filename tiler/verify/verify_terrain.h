@@ -5,8 +5,8 @@
 #include "core/georeference.h"
 #include "core/height_source.h"
 #include "core/progress.h"
-#include "tiler/verify/terrain_errors.h"
 #include "tiler/verify/terrain_report.h"
+#include "tiler/verify/undulation.h"
 #include "tiler/verify/verify.h"
 
 namespace terrane::verify {
