@@ -140,8 +140,7 @@ void add_build_command(CLI::App& app, const CommonOptions& common) {
       "--levels-per-octave", command->levels_per_octave,
       "Levels in each doubling of the tolerance, 1 to 4: finer steps between them [1]");
   build->add_option("--effort", command->effort,
-                    "0 to 3: more time for fewer triangles of the finest level within the same "
-                    "tolerance [1]");
+                    "0 to 3: more time for fewer triangles within the same tolerance [1]");
   add_feature_options(*build, command->dem);
   add_geodetic_options(*build, command->geodetic);
   build->add_option("--jobs", command->jobs, "Threads; 0: one per core [0]");

@@ -21,7 +21,7 @@ struct BuildOptions {
   int tile_cells = 64;
   /// Levels in each doubling of the tolerance, 1 to 4: that many have the same tiles.
   int levels_per_octave = 1;
-  /// Time for fewer triangles of level 0, 0 to 3; see hierarchy::StrictOptions::effort.
+  /// Time for fewer triangles, 0 to 3; see hierarchy::StrictOptions::effort.
   int effort = hierarchy::kDefaultEffort;
   /// Lines that stay edges of every level, within its tolerance of their place in plan, and water;
   /// laid for rounded places (ingest/features.h). The DEM has its water at one height already.

@@ -20,7 +20,7 @@ struct TileSource {
   const WorldFrame& world;
   const Pyramid& pyramid;
   const Lattice& lattice;
-  /// Of level 0 alone; see hierarchy::StrictOptions::effort.
+  /// See hierarchy::StrictOptions::effort.
   int effort = hierarchy::kDefaultEffort;
   /// Lines and water that tiles keep, if any.
   const TileFeatures* features = nullptr;

@@ -98,6 +98,45 @@ TEST(StrictCollapse, LockedVerticesStayWhereTheyAre) {
   }
 }
 
+/// The finer mesh on its way to the coarser one.
+TerrainMesh blend(const TerrainMesh& finer, const StrictResult& coarser, double t) {
+  TerrainMesh mesh = finer;
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+    const Place& to = coarser.mesh.vertices[coarser.target[v]].place;
+    Place& place = mesh.vertices[v].place;
+    place.plan.x += static_cast<std::int32_t>(std::lround(t * (to.plan.x - place.plan.x)));
+    place.plan.y += static_cast<std::int32_t>(std::lround(t * (to.plan.y - place.plan.y)));
+    place.height_m += t * (to.height_m - place.height_m);
+  }
+  return mesh;
+}
+
+TEST(StrictCollapse, AboveLevel0EachEffortBlendsSoundlyAndNeedsNoMoreTriangles) {
+  std::mt19937 random(7);
+  const HeightGrid grid = grid_of(49, 49, [&](auto c, auto r) {
+    return 20 * std::sin(0.3 * static_cast<double>(c)) * std::cos(0.23 * static_cast<double>(r)) +
+           2 * static_cast<double>(random()) / 4294967296.0;
+  });
+  const TerrainMesh level0 = collapse(grid, 1).mesh;
+  FinerLevel finer{.places = {}, .triangles = level0.triangles, .target = {}};
+  for (const TerrainVertex& vertex : level0.vertices) finer.places.push_back(vertex.place);
+
+  std::size_t triangles = level0.triangles.size();
+  for (const int effort : {0, 1, 3}) {
+    const StrictResult level1 = collapse_strictly(level0, field_of(grid), ExactPlacer(), finer,
+                                                  {.tolerance_m = 2, .effort = effort});
+    EXPECT_LT(level1.mesh.triangles.size(), triangles) << "effort " << effort;
+    triangles = level1.mesh.triangles.size();
+    for (const double t : {0.1, 0.25, 0.5, 0.75, 0.9}) {
+      const PlainError error = brute_force_error(blend(level0, level1, t), grid);
+      // places on the way are rounded to 1/16,384 cell
+      EXPECT_LE(error.max_m, 2 + 0.01) << "effort " << effort << " at " << t;
+      EXPECT_EQ(error.folded, 0) << "effort " << effort << " at " << t;
+    }
+    EXPECT_LE(brute_force_error(level1.mesh, grid).max_m, 2 + 1e-9) << "effort " << effort;
+  }
+}
+
 class RandomTerrain : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(RandomTerrain, StaysWithinTheBoundCoversEverySampleAndFoldsNothing) {
