@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 #include <unordered_map>
@@ -55,6 +57,22 @@ std::vector<Edge> rim_of(const std::vector<TerrainVertex>& vertices,
   return {open.begin(), open.end()};
 }
 
+/// Puts the heights of samples at what their seams made of them.
+void raise(const std::vector<SeamChain>& seams, const std::vector<SampleId>& samples,
+           std::vector<double>& heights_m) {
+  std::map<std::pair<double, double>, double> raised_m;
+  for (const SeamChain& seam : seams) {
+    for (const SeamVertex& vertex : seam) {
+      if (std::isnan(vertex.height_m)) continue;
+      raised_m[{vertex.onto.column, vertex.onto.row}] = vertex.height_m;
+    }
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto found = raised_m.find({samples[i].column, samples[i].row});
+    if (found != raised_m.end()) heights_m[i] = found->second;
+  }
+}
+
 /// One tile on its way: its samples, its map to the world, its options.
 class TileBuild {
  public:
@@ -84,11 +102,12 @@ class TileBuild {
     return frame_.place(vertex.plan, frame_.over_datum_m(vertex.plan, vertex.height_m));
   }
 
-  /// Puts the vertices of rim and seams where their samples are written: a function of the sample
-  /// alone, the same in every tile and never by way of the tile's own frame. Those that lines
-  /// brought are put so at level 0; later each level rounds what the finer one wrote.
+  /// Puts the vertices of rim and seams where their samples are written, at the height that a seam
+  /// gave them if it did: the same in every tile and never by way of the tile's own frame. Those
+  /// that lines brought are put so at level 0; later each level rounds what the finer one wrote.
   /// \param line_vertices  of a leaf tile: the last vertices.
-  void fix_rim(TerrainMesh& mesh, std::span<const hierarchy::LineVertex> line_vertices = {}) const {
+  void fix_rim(TerrainMesh& mesh, const std::vector<SeamChain>& seams,
+               std::span<const hierarchy::LineVertex> line_vertices = {}) const {
     std::vector<TerrainVertex*> rim, between;
     std::vector<SampleId> samples;
     std::vector<GridPosition> positions, positions_between;
@@ -106,7 +125,9 @@ class TileBuild {
         heights_between_m.push_back(line_vertices[v - first_of_lines].height_m);
       }
     }
-    put(rim, positions, samples_.heights_m(samples));
+    std::vector<double> heights_m = samples_.heights_m(samples);
+    raise(seams, samples, heights_m);
+    put(rim, positions, heights_m);
     put(between, positions_between, heights_between_m);
   }
 
@@ -269,9 +290,9 @@ class SeamVertices {
  public:
   SeamVertices(const std::vector<BorderPlace>& borders, const std::vector<SeamChain>& seams) {
     for (const SeamChain& seam : seams) {
-      for (const auto& [gone, onto] : seam) {
-        numbers_.emplace(Key{gone.column, gone.row}, kNone);
-        numbers_.emplace(Key{onto.column, onto.row}, kNone);
+      for (const SeamVertex& vertex : seam) {
+        numbers_.emplace(Key{vertex.from.column, vertex.from.row}, kNone);
+        numbers_.emplace(Key{vertex.onto.column, vertex.onto.row}, kNone);
       }
     }
     for (std::uint32_t v = 0; v < borders.size(); ++v) {
@@ -305,8 +326,8 @@ FinerLevel leave_out(const std::vector<BorderPlace>& borders, const std::vector<
   FinerLevel finer{.places = {}, .triangles = triangles, .target = {}};
   for (std::uint32_t v = 0; v < borders.size(); ++v) finer.target.push_back(v);
   for (const SeamChain& seam : seams) {
-    for (const auto& [gone, onto] : seam) {
-      const auto from = seam_vertices.find(gone), to = seam_vertices.find(onto);
+    for (const SeamVertex& vertex : seam) {
+      const auto from = seam_vertices.find(vertex.from), to = seam_vertices.find(vertex.onto);
       // where only the neighbour has triangles, there is nothing to take out
       if (from && to) finer.target[*from] = *to;
     }
@@ -366,7 +387,7 @@ BuiltTile build_leaf(const TileSource& source, const TileId& tile,
     set_kind(mesh.vertices[v], boundary[v], places[v], source.pyramid, tile);
   }
   set_line_kinds(mesh);
-  build.fix_rim(mesh, full.line_vertices);
+  build.fix_rim(mesh, seams, full.line_vertices);
   if (!full.line_vertices.empty()) check_upright(mesh, tile);
   return {build.finish(mesh, finer, {}, tolerance_m).first, {}};
 }
@@ -391,7 +412,7 @@ BuiltTile build_parent(const TileSource& source, const TileId& tile,
     set_kind(mesh.vertices.back(), boundary[v], joined.borders[v], source.pyramid, tile);
   }
   set_line_kinds(mesh);
-  build.fix_rim(mesh);
+  build.fix_rim(mesh, seams);
 
   auto [own, targets] = build.finish(mesh, finer, joined.points, tolerance_m);
   result.mesh = std::move(own);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <queue>
 #include <tuple>
@@ -47,6 +48,51 @@ double worst_error_m(const FieldPoint& a, const FieldPoint& b, const FieldPoint&
   return is_within ? worst : std::numeric_limits<double>::infinity();
 }
 
+/// The heights of a star's centre that keep it near the samples.
+class FeasibleHeights {
+ public:
+  FeasibleHeights(const SampleField& field, double tolerance_m)
+      : field_(field), tolerance_m_(tolerance_m) {}
+
+  /// Takes in the samples under a triangle.
+  /// \return false if no height is left.
+  bool add(const FieldPoint& centre, const FieldPoint& a, const FieldPoint& b) {
+    const double ax = a.column - centre.column, ay = a.row - centre.row;
+    const double bx = b.column - centre.column, by = b.row - centre.row;
+    const double scale = 1 / (ax * by - ay * bx);
+    return for_each_sample(
+        centre, a, b, field_, field_.slack_cells, [&](std::size_t, const FieldSample& sample) {
+          const double x = sample.column - centre.column, y = sample.row - centre.row;
+          const double of_a = (x * by - y * bx) * scale, of_b = (ax * y - ay * x) * scale;
+          const double weight = 1 - of_a - of_b;
+          if (weight < kSmallestWeight) return true;
+          const double rest_m = sample.height_m - of_a * a.height_m - of_b * b.height_m;
+          lowest_m_ = std::max(lowest_m_, (rest_m - tolerance_m_) / weight);
+          highest_m_ = std::min(highest_m_, (rest_m + tolerance_m_) / weight);
+          weights_ += weight * weight;
+          weighted_m_ += weight * rest_m;
+          return lowest_m_ <= highest_m_;
+        });
+  }
+
+  /// Least squares, away from the ends of the interval as in the collapse of tiles.
+  std::optional<double> best_m() const {
+    if (weights_ == 0) return std::nullopt;
+    const double margin_m = kIntervalMargin * (highest_m_ - lowest_m_);
+    return std::clamp(weighted_m_ / weights_, lowest_m_ + margin_m, highest_m_ - margin_m);
+  }
+
+ private:
+  static constexpr double kSmallestWeight = 1e-4;
+  static constexpr double kIntervalMargin = 0.2;
+
+  const SampleField& field_;
+  double tolerance_m_;
+  double lowest_m_ = -std::numeric_limits<double>::infinity();
+  double highest_m_ = std::numeric_limits<double>::infinity();
+  double weights_ = 0, weighted_m_ = 0;
+};
+
 /// The vertices around one of the chain's, counter-clockwise.
 struct Ring {
   std::vector<std::uint32_t> vertices;  ///< empty if they are not one fan
@@ -81,7 +127,9 @@ struct Candidate {
   double worst_m;
   double altitude2;  // the new triangles' smallest, squared
   std::uint32_t gone, onto;
-  std::uint32_t version;  // of gone's surroundings
+  std::uint32_t version, version_onto;  // of their surroundings
+  Place place;                          // where onto is written then
+  double raised_m;                      // the height wished for it; NaN: as it is
 
   /// Is it to be done later?
   bool operator<(const Candidate& other) const {
@@ -115,6 +163,7 @@ class ChainCollapse {
                      options.smallest_altitude_cells);
     }
     for (std::uint32_t v = 0; v < vertices_.size(); ++v) result_.target.push_back(v);
+    result_.raised_m.resize(vertices_.size(), std::numeric_limits<double>::quiet_NaN());
   }
 
   ChainResult run() {
@@ -122,9 +171,12 @@ class ChainCollapse {
     while (!queue_.empty()) {
       const Candidate next = queue_.top();
       queue_.pop();
-      if (next.version == version_[next.gone] && blends(next)) collapse(next.gone, next.onto);
+      const bool is_fresh =
+          next.version == version_[next.gone] && next.version_onto == version_[next.onto];
+      if (is_fresh && blends(next)) collapse(next);
     }
     follow_targets();
+    for (const TerrainVertex& vertex : vertices_) result_.places.push_back(vertex.place);
     return std::move(result_);
   }
 
@@ -163,7 +215,6 @@ class ChainCollapse {
   }
 
   void enqueue(std::uint32_t i) {
-    ++version_[i];
     if (!may_go(i) || !may_be_joined(i)) return;
     for (const std::uint32_t onto : {before_[i], after_[i]}) {
       const Candidate candidate = judge(i, onto);
@@ -181,12 +232,56 @@ class ChainCollapse {
     return result;
   }
 
-  Candidate judge(std::uint32_t gone, std::uint32_t onto) const {
-    Candidate candidate{0, std::numeric_limits<double>::infinity(), gone, onto, version_[gone]};
-    constexpr double kRefused = std::numeric_limits<double>::infinity();
-    const double altitude = options_.smallest_altitude_cells * kUnitsPerCell;
-    const std::vector<std::uint32_t> around = others(gone, onto);
+  /// May a vertex that another collapses onto go up or down with it? Not on the edge of the data.
+  bool may_be_raised(std::uint32_t gone, std::uint32_t onto) const {
+    return options_.raise && may_go(onto) && rings_[gone].is_closed && rings_[onto].is_closed;
+  }
+
+  /// The fan around both; the last vertex is the first again.
+  std::vector<std::uint32_t> around_both(std::uint32_t gone, std::uint32_t onto) const {
+    std::vector<std::uint32_t> all = others(gone, onto), second = others(onto, gone);
+    all.insert(all.end(), second.begin() + 1, second.end());
+    return all;
+  }
+
+  /// The height that is best for the fan; none if there is none within the tolerance.
+  std::optional<double> best_height_m(std::uint32_t onto,
+                                      const std::vector<std::uint32_t>& around) const {
     const Place& centre = place(onto);
+    FeasibleHeights heights(field_, options_.tolerance_m);
+    for (std::size_t k = 0; k + 1 < around.size(); ++k) {
+      const Place &a = vertices_[around[k]].place, &b = vertices_[around[k + 1]].place;
+      if (squared_altitude(centre.plan, a.plan, b.plan) <= 0) return std::nullopt;
+      if (!heights.add(field_point(centre), field_point(a), field_point(b))) return std::nullopt;
+    }
+    return heights.best_m();
+  }
+
+  Candidate judge(std::uint32_t gone, std::uint32_t onto) const {
+    constexpr double kRefused = std::numeric_limits<double>::infinity();
+    Candidate candidate{0,
+                        kRefused,
+                        gone,
+                        onto,
+                        version_[gone],
+                        version_[onto],
+                        place(onto),
+                        std::numeric_limits<double>::quiet_NaN()};
+    const double altitude = options_.smallest_altitude_cells * kUnitsPerCell;
+    std::vector<std::uint32_t> around;
+    if (may_be_raised(gone, onto)) {
+      around = around_both(gone, onto);
+      const std::optional<double> height_m = best_height_m(onto, around);
+      if (!height_m) {
+        candidate.worst_m = kRefused;
+        return candidate;
+      }
+      candidate.raised_m = *height_m;
+      candidate.place = options_.raise(chain_[onto], *height_m);
+    } else {
+      around = others(gone, onto);
+    }
+    const Place& centre = candidate.place;
     for (std::size_t k = 0; k + 1 < around.size(); ++k) {
       const Place &a = vertices_[around[k]].place, &b = vertices_[around[k + 1]].place;
       const double altitude2 = squared_altitude(centre.plan, a.plan, b.plan);
@@ -205,14 +300,18 @@ class ChainCollapse {
 
   bool blends(const Candidate& candidate) {
     if (!guard_) return true;
-    const VertexId core[] = {VertexId{chain_[candidate.gone]}};
-    if (guard_->allows(core, place(candidate.onto))) return true;
+    const VertexId core[] = {VertexId{chain_[candidate.gone]}, VertexId{chain_[candidate.onto]}};
+    const std::size_t moving = std::isnan(candidate.raised_m) ? 1 : 2;
+    if (guard_->allows(std::span(core).first(moving), candidate.place)) return true;
     ++result_.refused_by_blend;
     return false;
   }
 
-  void collapse(std::uint32_t gone, std::uint32_t onto) {
+  void collapse(const Candidate& candidate) {
+    const std::uint32_t gone = candidate.gone, onto = candidate.onto;
     const std::uint32_t u = chain_[gone], v = chain_[onto];
+    vertices_[v].place = candidate.place;
+    if (!std::isnan(candidate.raised_m)) result_.raised_m[v] = candidate.raised_m;
     if (guard_) {
       const VertexId core[] = {VertexId{u}, VertexId{v}};
       guard_->join(core, VertexId{v});
@@ -225,8 +324,23 @@ class ChainCollapse {
     rings_[gone] = {};
     result_.target[u] = v;
     ++result_.collapses;
-    enqueue(onto);
-    enqueue(other);
+    enqueue_near(onto);
+  }
+
+  /// Tries again what is near a vertex whose surroundings changed: its neighbours' changed, too.
+  void enqueue_near(std::uint32_t centre) {
+    std::vector<std::uint32_t> changed{centre};
+    for (const std::uint32_t i : {before_[centre], after_[centre]}) {
+      if (i != kNone) changed.push_back(i);
+    }
+    for (const std::uint32_t i : changed) ++version_[i];
+    std::vector<std::uint32_t> near = changed;
+    for (const std::uint32_t i : changed) {
+      for (const std::uint32_t n : {before_[i], after_[i]}) {
+        if (n != kNone && std::ranges::find(near, n) == near.end()) near.push_back(n);
+      }
+    }
+    for (const std::uint32_t i : near) enqueue(i);
   }
 
   ///      a3───a2            onto's ring had ... a1, gone, a4 ...: a2 and a3 take gone's place;
@@ -257,7 +371,7 @@ class ChainCollapse {
     }
   }
 
-  const std::vector<TerrainVertex>& vertices_;
+  std::vector<TerrainVertex> vertices_;
   std::span<const std::uint32_t> chain_;
   const SampleField& field_;
   const Placer& placer_;

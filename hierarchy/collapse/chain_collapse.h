@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -21,19 +22,25 @@ struct ChainOptions {
   /// where the mesh goes on on both sides. Half a cell at most: then a tile's own samples and those
   /// on its border are all that it can cover.
   double largest_bend_m = 0;
+  /// Where a vertex of the strip, of those in the chain, is written at a wished height. Empty: all
+  /// keep their heights.
+  std::function<Place(std::uint32_t vertex, double height_m)> raise;
 };
 
 /// What became of a chain.
 struct ChainResult {
   std::vector<std::uint32_t> target;  ///< for each vertex of the strip: itself, or where it went
+  std::vector<Place> places;          ///< of each vertex of the strip
+  std::vector<double> raised_m;       ///< for each: the height last wished for it; NaN: as it was
   std::int64_t collapses = 0;
   std::int64_t refused_by_blend = 0;  ///< what the error allowed and the blend did not
 };
 
 /// Thins out the line of vertices that two meshes share, so that both remain within the tolerance.
 ///
-/// A vertex of the chain collapses onto its neighbour in the chain, which stays exactly where it
-/// is. The collapse stands if all triangles of both meshes around the vertex allow it: none folds
+/// A vertex of the chain collapses onto its neighbour in the chain, which keeps its place in plan
+/// and, unless it is locked, is put at the height that is best for the samples around both. The
+/// collapse stands if all triangles of both meshes around the vertices allow it: none folds
 /// or becomes too thin in plan, every sample under the new ones is within the tolerance, and the
 /// finer level, if there is one, blends soundly (morph_guard.h). The smallest error goes first;
 /// among equals, the collapse that leaves the fattest triangles.

@@ -105,23 +105,30 @@ class SeamBuild {
         .blend_tolerance_m = 0.999 * tolerance_m,
         .smallest_altitude_cells = source_.lattice.smallest_altitude_steps() * step_cells,
         .largest_bend_m =
-            std::min(kLargestBend * tolerance_m, kLargestBend_cells * frame_.spacing_m())};
+            std::min(kLargestBend * tolerance_m, kLargestBend_cells * frame_.spacing_m()),
+        .raise = {}};
+    // water keeps its height, and so do the lines that end on a seam
+    if (source_.features == nullptr) {
+      options.raise = [this](std::uint32_t v, double height_m) {
+        return frame_.place_of(written(v, over_ellipsoid_m(v, height_m)));
+      };
+    }
     constexpr int kMostTries = 8;
     for (int tries = 0; tries < kMostTries; ++tries) {
       const ChainResult result =
           hierarchy::collapse_chain(mesh_, chain_, finer_, reference_.field(), frame_, options);
-      if (result.collapses == 0) break;
+      if (result.collapses == 0) return as_it_was();
       const auto [errors, noted] =
           measure(measured_meshes(result), samples_, frame_, step_m(), kNotedShare * tolerance_m);
       const double worst_m = std::ranges::max(errors, {}, &MeasuredError::max_m).max_m;
-      if (worst_m <= kLargestShare * tolerance_m) return left_out(result);
+      if (worst_m <= kLargestShare * tolerance_m) return chain_of(result);
       if (reference_.learn(noted)) continue;
       const double factor = std::min(0.98, kLargestShare * tolerance_m / worst_m);
       options.tolerance_m *= factor;
       options.blend_tolerance_m *= factor;
       options.largest_bend_m *= factor;
     }
-    return {};
+    return as_it_was();
   }
 
  private:
@@ -135,10 +142,14 @@ class SeamBuild {
 
   void place_vertices() {
     mesh_.triangles = finer_.triangles = strip_.triangles;
-    const std::vector<LatticePoint> at_samples = written_samples();
+    for (const LatticePoint& point : strip_.points) {
+      finer_.places.push_back(frame_.place_of_finer(point));
+    }
+    ask_heights();
     for (std::size_t v = 0; v < strip_.borders.size(); ++v) {
-      if (!strip_.points.empty()) finer_.places.push_back(frame_.place_of_finer(strip_.points[v]));
-      const LatticePoint point = is_placed_by_sample(v) ? at_samples[v] : finer_.places[v].lattice;
+      const LatticePoint point =
+          is_placed_by_sample(v) ? written(v, std::isnan(raised_m_[v]) ? own_m_[v] : raised_m_[v])
+                                 : finer_.places[v].lattice;
       mesh_.vertices.push_back({.place = frame_.place_of(point), .border = strip_.borders[v]});
     }
   }
@@ -148,8 +159,8 @@ class SeamBuild {
     return strip_.points.empty() || strip_.borders[v].is_sample();
   }
 
-  /// Where the samples of the strip are written at this level.
-  std::vector<LatticePoint> written_samples() const {
+  /// Finds where the samples of the strip stand, and at which height the finer level has them.
+  void ask_heights() {
     std::vector<std::size_t> numbers;
     std::vector<SampleId> samples;
     std::vector<GridPosition> positions;
@@ -161,14 +172,31 @@ class SeamBuild {
       positions.push_back(border.position());
     }
     const std::vector<Plumb> plumbs = source_.world.plumbs(positions);
-    std::vector<double> heights_m = samples_.heights_m(samples);
-    std::vector<LatticePoint> points(strip_.borders.size());
+    const std::vector<double> heights_m = samples_.heights_m(samples);
+    plumbs_.resize(strip_.borders.size());
+    own_m_.resize(strip_.borders.size(), NAN);
+    raised_m_.resize(strip_.borders.size(), NAN);
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (!strip_.borders[numbers[i]].is_sample()) heights_m[i] = strip_.line_heights_m[numbers[i]];
-      points[numbers[i]] =
-          source_.lattice.of_sample(positions[i], plumbs[i], heights_m[i], seam_.first.level);
+      const std::size_t v = numbers[i];
+      plumbs_[v] = plumbs[i];
+      own_m_[v] = strip_.borders[v].is_sample() ? heights_m[i] : strip_.line_heights_m[v];
+      if (finer_.places.empty() || source_.features != nullptr) continue;
+      const double finer_m = over_ellipsoid_m(v, finer_.places[v].height_m);
+      const double rounding_m = source_.lattice.step_m(seam_.first.level - 1).norm();
+      if (std::abs(finer_m - own_m_[v]) > rounding_m) raised_m_[v] = finer_m;
     }
-    return points;
+  }
+
+  LatticePoint written(std::size_t v, double height_m) const {
+    return source_.lattice.of_sample(strip_.borders[v].position(), plumbs_[v], height_m,
+                                     seam_.first.level);
+  }
+
+  /// \param height_m  over the datum of the places.
+  double over_ellipsoid_m(std::size_t v, double height_m) const {
+    const BorderPlace& at = strip_.borders[v];
+    return height_m + frame_.drop_m(at.column - static_cast<double>(samples_.window().column),
+                                    at.row - static_cast<double>(samples_.window().row));
   }
 
   SampleId some_sample() const {
@@ -230,9 +258,7 @@ class SeamBuild {
   std::vector<MeasuredMesh> measured_meshes(const ChainResult& result) {
     collapsed_ = collapsed(result);
     std::vector<MeasuredMesh> meshes{{{}, collapsed_, {}}};
-    for (const TerrainVertex& vertex : mesh_.vertices) {
-      meshes[0].vertices.push_back(at(vertex.place));
-    }
+    for (const Place& place : result.places) meshes[0].vertices.push_back(at(place));
     if (finer_.places.empty()) return meshes;
     for (const double t : measured_moments(reference_)) {
       std::vector<WorldVertex> moving;
@@ -270,11 +296,25 @@ class SeamBuild {
     return triangles;
   }
 
-  SeamChain left_out(const ChainResult& result) const {
+  SeamChain chain_of(const ChainResult& result) const {
     SeamChain chain;
     for (const std::uint32_t v : chain_) {
-      if (result.target[v] == v) continue;
-      chain.push_back({strip_.borders[v], strip_.borders[result.target[v]]});
+      const std::uint32_t onto = result.target[v];
+      const double height_m = std::isnan(result.raised_m[onto])
+                                  ? raised_m_[onto]
+                                  : over_ellipsoid_m(onto, result.raised_m[onto]);
+      if (onto == v && std::isnan(height_m)) continue;
+      chain.push_back({strip_.borders[v], strip_.borders[onto], height_m});
+    }
+    return chain;
+  }
+
+  /// All vertices stay where the finer level has them.
+  SeamChain as_it_was() const {
+    SeamChain chain;
+    for (const std::uint32_t v : chain_) {
+      if (std::isnan(raised_m_[v])) continue;
+      chain.push_back({strip_.borders[v], strip_.borders[v], raised_m_[v]});
     }
     return chain;
   }
@@ -287,6 +327,9 @@ class SeamBuild {
   Reference reference_;
   TerrainMesh mesh_;
   FinerLevel finer_;
+  std::vector<Plumb> plumbs_;     // of the strip's samples
+  std::vector<double> own_m_;     // their heights over the ellipsoid
+  std::vector<double> raised_m_;  // at the finer level, where it has them at others; else NaN
   std::vector<std::uint32_t> chain_;
   std::vector<Corners> collapsed_;  // of the last try
 };

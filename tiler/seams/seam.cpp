@@ -5,7 +5,7 @@
 namespace terrane::tiler {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x326d616573727274;  // "trrseam2"
+constexpr std::uint64_t kMagic = 0x336d616573727274;  // "trrseam3"
 
 bool holds(const Pyramid& pyramid, const TileId& tile) {
   return tile.x >= 0 && tile.y >= 0 && pyramid.holds(tile);
@@ -65,7 +65,7 @@ void write_finished_seam(const SeamChain& chain, const std::filesystem::path& fi
 SeamChain read_finished_seam(const std::filesystem::path& file) {
   WorkFileReader reader(file);
   if (reader.get<std::uint64_t>() != kMagic) reader.refuse();
-  return reader.get_vector<LeftOut>();
+  return reader.get_vector<SeamVertex>();
 }
 
 }  // namespace terrane::tiler

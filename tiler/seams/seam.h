@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -38,14 +39,16 @@ Window samples_of(const Pyramid& pyramid, const SeamId& seam);
 /// The samples of both tiles.
 Window both_sides(const Pyramid& pyramid, const SeamId& seam);
 
-/// A border sample that a level leaves out, and the one that its vertex was collapsed into.
-struct LeftOut {
-  hierarchy::BorderPlace gone;
-  hierarchy::BorderPlace onto;
+/// What became of a vertex on a border.
+struct SeamVertex {
+  hierarchy::BorderPlace from;  ///< where it was at the finer level
+  hierarchy::BorderPlace onto;  ///< the place that it was collapsed onto; the same if it stays
+  /// Height at which that place is written, over the ellipsoid; NaN: that of its sample.
+  double height_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// What became of a seam at its level, in order along it. Both tiles do the same.
-using SeamChain = std::vector<LeftOut>;
+using SeamChain = std::vector<SeamVertex>;
 
 /// \throws OutputError if the file cannot be written.
 void write_finished_seam(const SeamChain& chain, const std::filesystem::path& file);

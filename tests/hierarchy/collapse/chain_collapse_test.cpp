@@ -40,6 +40,16 @@ struct Seam {
                           {.tolerance_m = tolerance_m, .blend_tolerance_m = blend_tolerance_m});
   }
 
+  /// The same, and heights may change.
+  ChainResult collapse_and_raise(double tolerance_m, const FinerLevel& finer = {},
+                                 double blend_tolerance_m = 1) const {
+    ChainOptions options{.tolerance_m = tolerance_m, .blend_tolerance_m = blend_tolerance_m};
+    options.raise = [this](std::uint32_t v, double height_m) {
+      return ExactPlacer().place(mesh.vertices[v].place.plan, height_m);
+    };
+    return collapse_chain(mesh, chain, finer, field_of(grid), ExactPlacer(), options);
+  }
+
   std::set<std::int64_t> kept_columns(const ChainResult& result) const {
     std::set<std::int64_t> columns;
     for (std::size_t i = 0; i < chain.size(); ++i) {
@@ -117,6 +127,37 @@ TEST(ChainCollapse, ABlendThatLeavesItsToleranceIsRefused) {
   EXPECT_GT(strict.refused_by_blend, 0);
 }
 
+TEST(ChainCollapse, AnArcNeedsFewerVerticesWhereTheyMayRise) {
+  // a chord of n cells is at most n^2 / 400 m above the arc; half of that if its ends may sink
+  const Seam arc(81, [](auto c, auto) { return static_cast<double>(c * c) / 100; });
+  const auto kept = arc.kept_columns(arc.collapse(0.5));
+  const ChainResult raised = arc.collapse_and_raise(0.5);
+  EXPECT_LT(arc.kept_columns(raised).size(), kept.size());
+  for (const std::uint32_t end : {arc.chain.front(), arc.chain.back()}) {
+    EXPECT_EQ(raised.places[end].height_m, arc.mesh.vertices[end].place.height_m);
+    EXPECT_TRUE(std::isnan(raised.raised_m[end]));
+  }
+}
+
+TEST(ChainCollapse, ALockedVertexKeepsItsHeight) {
+  Seam seam(17, [](auto c, auto) { return c % 2 == 0 ? 0.5 : -0.5; });
+  seam.mesh.vertices[seam.chain[6]].kind = VertexKind::kLocked;
+  const ChainResult result = seam.collapse_and_raise(2);
+  EXPECT_EQ(result.places[seam.chain[6]].height_m, 0.5);
+}
+
+TEST(ChainCollapse, ARiseThatTheBlendDoesNotAllowIsRefused) {
+  const Seam bump(9, [](auto c, auto r) { return c == 4 && r == kRow ? 1.0 : 0.0; });
+  FinerLevel finer{.places = {}, .triangles = bump.mesh.triangles, .target = {}};
+  for (const TerrainVertex& vertex : bump.mesh.vertices) finer.places.push_back(vertex.place);
+  const ChainResult strict = bump.collapse_and_raise(2, finer, 0.1);
+  const auto height_m = [&](std::uint32_t v) { return strict.places[v].height_m; };
+  for (std::size_t i = 0; i < bump.chain.size(); ++i) {
+    if (strict.target[bump.chain[i]] != bump.chain[i]) continue;
+    EXPECT_NEAR(height_m(bump.chain[i]), i == 4 ? 1 : 0, 0.1 + 1.0 / 1024);
+  }
+}
+
 class RandomSeam : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(RandomSeam, StaysWithinTheBoundAndFoldsNothing) {
@@ -130,7 +171,8 @@ TEST_P(RandomSeam, StaysWithinTheBoundAndFoldsNothing) {
   });
   const double tolerance_m = uniform(0.3, 8);
 
-  const ChainResult result = seam.collapse(tolerance_m);
+  const ChainResult result =
+      GetParam() % 2 == 0 ? seam.collapse(tolerance_m) : seam.collapse_and_raise(tolerance_m);
 
   double area = 0;
   for (const auto& [a, b, c] : seam.triangles_after(result)) {
@@ -142,10 +184,13 @@ TEST_P(RandomSeam, StaysWithinTheBoundAndFoldsNothing) {
   // all turn the same way and cover as much as before: nothing overlaps
   EXPECT_NEAR(area, 4.0 * static_cast<double>(seam.grid.window.columns - 1), 1e-9);
 
-  // along the seam the mesh is a broken line through the kept samples
+  // along the seam the mesh is a broken line through the kept vertices
   const auto kept = seam.kept_columns(result);
   for (auto from = kept.begin(), to = std::next(from); to != kept.end(); ++from, ++to) {
-    const double at_from = seam.grid.at(*from, kRow), at_to = seam.grid.at(*to, kRow);
+    const auto height_m = [&](std::int64_t column) {
+      return result.places[seam.chain[static_cast<std::size_t>(column)]].height_m;
+    };
+    const double at_from = height_m(*from), at_to = height_m(*to);
     for (std::int64_t c = *from; c < *to; ++c) {
       const double t = static_cast<double>(c - *from) / static_cast<double>(*to - *from);
       // heights are placed in 1/1024 m

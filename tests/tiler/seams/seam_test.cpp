@@ -40,11 +40,13 @@ TEST(Seams, LieOnTheLastColumnOrRowOfTheirFirstTile) {
 TEST(Seams, ComeBackFromTheirFile) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "some.seam";
-  write_finished_seam({{{3, 64}, {2, 64}}, {{5, 64}, {7, 64}}}, file);
+  write_finished_seam({{{3, 64}, {2, 64}}, {{5, 64}, {7, 64}, 812.5}}, file);
   const SeamChain read = read_finished_seam(file);
   ASSERT_EQ(read.size(), 2U);
-  EXPECT_EQ(read[1].gone, (hierarchy::BorderPlace{5, 64}));
+  EXPECT_EQ(read[1].from, (hierarchy::BorderPlace{5, 64}));
   EXPECT_EQ(read[1].onto, (hierarchy::BorderPlace{7, 64}));
+  EXPECT_EQ(read[1].height_m, 812.5);
+  EXPECT_TRUE(std::isnan(read[0].height_m));
 }
 
 TEST(Seams, ADamagedFileIsAnInputErrorThatNamesIt) {
