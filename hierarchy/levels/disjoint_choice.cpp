@@ -82,7 +82,7 @@ void DisjointChoice::list_ripe(const std::vector<Waiting>& waiting) {
   for (std::uint32_t i = 0; i < waiting.size(); ++i) {
     const bool is_lightest = std::ranges::all_of(
         waiting[i].corners, [&](VertexId v) { return lightest_[index(v)] == round_begin_ + i; });
-    if (is_lightest) ripe_.push_back({.place = i});
+    if (is_lightest) ripe_.push_back(Ripe{i, Verdict::kNotYet, {Eigen::Vector3d::Zero()}});
   }
 }
 

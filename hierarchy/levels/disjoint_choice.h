@@ -53,9 +53,9 @@ class DisjointChoice {
   enum class Verdict : std::uint8_t { kNotYet, kTaken, kRejected };
   /// The lightest of all that wait at each of its corners.
   struct Ripe {
-    std::uint32_t place = 0;  // in the list of those that wait
-    Verdict verdict = Verdict::kNotYet;
-    CollapsePlan plan = {};
+    std::uint32_t place;  // in the list of those that wait
+    Verdict verdict;
+    CollapsePlan plan;
   };
   struct PassedOver {
     Entry entry;
