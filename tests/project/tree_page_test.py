@@ -76,8 +76,9 @@ def read_triangles(file):
     header, body = data.split(b"end_header\n", 1)
     counts = [int(line.split()[-1]) for line in header.decode().splitlines()
               if line.startswith("element")]
-    points = [struct.unpack_from("<3d", body, 24 * v) for v in range(counts[0])]
-    faces = body[24 * counts[0]:]
+    size = 24 + 3 * (b"property uchar red" in header)
+    points = [struct.unpack_from("<3d", body, size * v) for v in range(counts[0])]
+    faces = body[size * counts[0]:]
     return [[x for v in struct.unpack_from("<3i", faces, 13 * t + 1) for x in points[v]]
             for t in range(counts[1])]
 
