@@ -51,6 +51,15 @@ TERRANE_LANES_INLINE bool any(const LaneMask& mask) {
   return (bits[0] | bits[1] | bits[2] | bits[3]) != 0;
 }
 
+/// A bit for each lane, the first one lowest.
+TERRANE_LANES_INLINE std::uint32_t bits_of(const LaneMask& mask) {
+  std::int32_t lanes[kLanes];
+  std::memcpy(lanes, &mask, sizeof lanes);
+  std::uint32_t bits = 0;
+  for (std::size_t k = 0; k < kLanes; ++k) bits |= (lanes[k] != 0 ? 1U : 0U) << k;
+  return bits;
+}
+
 TERRANE_LANES_INLINE float sum(const Lanes& a) {
   return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));
 }

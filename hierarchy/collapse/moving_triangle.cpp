@@ -295,10 +295,7 @@ class MovingTriangle::Sweep {
         const LaneMask is_cleared =
             is_void | ((abs(eight.height_m) <= sweep.highest_m_) &
                        are_sound<kSplitsAtOnce>(sweep.passages(eight), sweep.limits_, is_void));
-        if (!any(~is_cleared)) continue;
-        Doubt doubt{first, 0};
-        for (std::size_t k = 0; k < kLanes; ++k) doubt.samples |= (is_cleared[k] ? 0U : 1U) << k;
-        return doubt;
+        if (any(~is_cleared)) return {first, bits_of(~is_cleared)};
       }
       return {samples.count, 0};
     }
