@@ -29,6 +29,7 @@ struct BuildCommand {
   std::optional<int> tile_cells, levels_per_octave, effort, jobs;
   std::optional<double> tolerance_m;
   GeodeticOptionsGiven geodetic;
+  RasterOptionsGiven raster;
 };
 
 template <class From, class To>
@@ -57,6 +58,23 @@ void refuse_native_options(const BuildCommand& command, const BuildSettings& set
   }
 }
 
+/// Options of meshes, where pictures are to be written; and the other way round.
+void refuse_other_formats(const BuildCommand& command, const BuildSettings& settings) {
+  const bool is_raster = settings.geodetic.is_raster();
+  const char* const useless = !is_raster                       ? (command.raster.px      ? "--raster-px"
+                                                                  : command.raster.image ? "--raster-image"
+                                                                                         : nullptr)
+                              : command.tolerance_m            ? "--tolerance"
+                              : command.tile_cells             ? "--tile-cells"
+                              : command.levels_per_octave      ? "--levels-per-octave"
+                              : command.effort                 ? "--effort"
+                              : !settings.drape.images.empty() ? "--texture"
+                                                               : nullptr;
+  if (useless == nullptr) return;
+  throw ConfigError(fmt::format("{}: has no meaning for --format {}. Leave it away", useless,
+                                settings.geodetic.format));
+}
+
 BuildSettings resolve(const BuildCommand& command) {
   BuildSettings settings;
   if (!command.config.empty()) read_settings(command.config, settings);
@@ -73,6 +91,9 @@ BuildSettings resolve(const BuildCommand& command) {
   apply(command.geodetic, settings.geodetic);
   tiler::check(settings.build);
   check(settings.geodetic);
+  apply(command.raster, settings.raster);
+  check(settings.raster);
+  refuse_other_formats(command, settings);
   if (settings.geodetic.is_geodetic()) refuse_native_options(command, settings);
   if (settings.dem.empty()) {
     throw ConfigError("no DEM given. Name one, or set ingest.dem in the file of --config");
@@ -83,6 +104,11 @@ BuildSettings resolve(const BuildCommand& command) {
 void report(const tiler::BuildResult& result, const std::filesystem::path& out) {
   if (result.was_up_to_date) {
     fmt::print("{}: up to date\n", out.string());
+    return;
+  }
+  if (result.triangles == 0) {
+    fmt::print("{}: {} zooms, {} tiles, {:.1f} MB\n", out.string(), result.levels, result.tiles,
+               static_cast<double>(result.bytes) / 1e6);
     return;
   }
   fmt::print("{}: {} levels, {} tiles, {:.1f} MB; level 0: {} triangles, at most {:.3f} m off\n",
@@ -117,6 +143,14 @@ void run(const BuildCommand& command, const CommonOptions& common) {
     report(result, command.out);
     return;
   }
+  if (settings.geodetic.is_raster()) {
+    const tiler::BuildResult result =
+        build_raster(*dem, statistics, settings.geodetic, settings.raster, settings.build,
+                     command.out, *progress);
+    tiler::write_whole_file(command.out / "build.toml", to_toml(settings));
+    report(result, command.out);
+    return;
+  }
   viewer::write_viewer(command.out);
   tiler::write_whole_file(command.out / "build.toml", to_toml(settings));
   report(tiler::build(dem->heights(), dem->place(), statistics, settings.build, command.out,
@@ -143,6 +177,7 @@ void add_build_command(CLI::App& app, const CommonOptions& common) {
                     "0 to 3: more time for fewer triangles within the same tolerance [1]");
   add_feature_options(*build, command->dem);
   add_geodetic_options(*build, command->geodetic);
+  add_raster_options(*build, command->raster);
   build->add_option("--jobs", command->jobs, "Threads; 0: one per core [0]");
   add_tile_options(*build, command->tiles);
   build->add_option("--config", command->config,

@@ -105,6 +105,8 @@ const std::map<std::string, Reader>& readers() {
        [](const Setting& s, BuildSettings& to) { to.features.water = s.texts(); }},
       {"features.water_height_m",
        [](const Setting& s, BuildSettings& to) { to.features.water_height_m = s.real_number(); }},
+      {"raster.px", [](const Setting& s, BuildSettings& to) { to.raster.px = s.whole_number(); }},
+      {"raster.image", [](const Setting& s, BuildSettings& to) { to.raster.image = s.text(); }},
       {"build.jobs", [](const Setting& s, BuildSettings& to) { to.build.jobs = s.whole_number(); }},
       {"tiles.implicit",
        [](const Setting& s, BuildSettings& to) { to.build.format.is_implicit = s.truth(); }},
@@ -227,7 +229,8 @@ std::string to_toml(const BuildSettings& settings) {
       "\n[build]\ntolerance_m = {}\ntile_cells = {}\nlevels_per_octave = {}\neffort = {}\n",
       settings.build.tolerance_m, settings.build.tile_cells, settings.build.levels_per_octave,
       settings.build.effort);
-  if (settings.geodetic.is_geodetic()) {
+  const bool is_native = !settings.geodetic.is_geodetic() && !settings.geodetic.is_raster();
+  if (!is_native) {
     text += "scheme = " + quoted(settings.geodetic.scheme) +
             "\nformat = " + quoted(settings.geodetic.format) + "\n";
   }
@@ -240,7 +243,8 @@ std::string to_toml(const BuildSettings& settings) {
   if (!settings.build.format.attribution.empty()) {
     text += "attribution = " + quoted(settings.build.format.attribution) + "\n";
   }
-  if (settings.geodetic.is_geodetic()) text += geodetic_toml(settings.geodetic);
+  if (!is_native) text += geodetic_toml(settings.geodetic);
+  if (settings.geodetic.is_raster()) text += to_toml(settings.raster);
   return text;
 }
 

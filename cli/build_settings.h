@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/geodetic_build.h"
+#include "cli/raster_build.h"
 #include "ingest/dem.h"
 #include "ingest/drape.h"
 #include "ingest/features.h"
@@ -20,6 +21,7 @@ struct BuildSettings {
   ingest::DrapeOptions drape;
   tiler::BuildOptions build;
   GeodeticSettings geodetic;
+  RasterSettings raster;
 };
 
 /// Reads settings from TOML, over those that are given. Keys: see config/.

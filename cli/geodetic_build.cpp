@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "cli/temporary_file.h"
 #include "core/errors.h"
 #include "ingest/resample.h"
 #include "ingest/resampling_error.h"
@@ -13,16 +14,6 @@ namespace terrane::cli {
 namespace {
 
 constexpr const char* k3dTilesTerrain = "3dtiles-terrain";
-
-/// A file that goes with its owner.
-struct TemporaryFile {
-  std::filesystem::path path;
-
-  ~TemporaryFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path, ignored);
-  }
-};
 
 std::string described(const GeodeticSettings& settings, const std::vector<std::string>& water,
                       const ingest::Geoid* geoid) {
@@ -83,6 +74,18 @@ bool can_hold(const Resampled& resampled, const std::string& dem, double toleran
   return false;
 }
 
+void check_raster(const GeodeticSettings& settings) {
+  if (settings.is_geodetic()) {
+    throw ConfigError(fmt::format("--scheme geodetic: {} is in web mercator. Leave --scheme away",
+                                  settings.format));
+  }
+  if (settings.geoid.empty()) return;
+  throw ConfigError(
+      fmt::format("--geoid: {} keeps heights as they are, over sea level as maps have them. Leave "
+                  "it away",
+                  settings.format));
+}
+
 }  // namespace
 
 void add_geodetic_options(CLI::App& command, GeodeticOptionsGiven& given) {
@@ -91,16 +94,16 @@ void add_geodetic_options(CLI::App& command, GeodeticOptionsGiven& given) {
                      "longitudes and latitudes, to which the DEM is resampled [native]");
   command.add_option(
       "--format", given.format,
-      "What to write: 3dtiles (native); quantized-mesh or 3dtiles-terrain (geodetic) "
-      "[3dtiles, quantized-mesh]");
+      "What to write: 3dtiles (native); quantized-mesh or 3dtiles-terrain (geodetic); terrarium or "
+      "terrain-rgb: pictures of heights in web mercator [3dtiles, quantized-mesh]");
   command.add_option("--geoid", given.geoid,
                      "Geodetic: what the heights are over: egm96, a file with a grid, or none: the "
                      "WGS 84 ellipsoid [as the DEM's CRS says, else none]");
   command.add_option("--max-zoom", given.max_zoom,
-                     "Geodetic: finest zoom, 0 to 22 [the coarsest that can hold the tolerance at "
-                     "the DEM's samples]");
+                     "Finest zoom, 0 to 22, geodetic or of pictures [the coarsest that can hold "
+                     "the tolerance at the DEM's samples; for pictures, that has its cells]");
   command.add_option("--fill", given.fill_m,
-                     "Geodetic: height in metres of what the DEM has no data for [0]");
+                     "Geodetic and pictures: height in metres of what the DEM has no data for [0]");
 }
 
 void apply(const GeodeticOptionsGiven& given, GeodeticSettings& settings) {
@@ -118,6 +121,10 @@ void check(const GeodeticSettings& settings) {
   if (settings.scheme != "native" && settings.scheme != "geodetic") {
     throw ConfigError(
         fmt::format("--scheme {}: is not known. Use native or geodetic", settings.scheme));
+  }
+  if (settings.is_raster()) {
+    check_raster(settings);
+    return;
   }
   const bool is_known = settings.is_geodetic() ? settings.format == "quantized-mesh" ||
                                                      settings.format == k3dTilesTerrain

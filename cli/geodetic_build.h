@@ -24,6 +24,7 @@ struct GeodeticSettings {
   double fill_m = 0;
 
   bool is_geodetic() const { return scheme == "geodetic"; }
+  bool is_raster() const { return format == "terrarium" || format == "terrain-rgb"; }
   bool has_water_masks() const { return format == "quantized-mesh"; }
 };
 

@@ -85,6 +85,19 @@ void describe_each_level(const nlohmann::json& levels) {
   fmt::print("{:>5} {:>38} {:>7} {:>10} {:>9.2f}\n", "all", "", tiles, triangles, bytes / 1e6);
 }
 
+/// Pictures of heights.
+void describe_raster(const nlohmann::json& json) {
+  print_row("written by", json.at("generator").get<std::string>());
+  print_row("pictures", fmt::format("{}, {} px a tile", json.at("encoding").get<std::string>(),
+                                    json.at("tile_px").get<int>()));
+  print_row("heights", json.at("source").get<std::string>());
+  fmt::print("\n{:>5} {:>7} {:>9}\n", "zoom", "tiles", "MB");
+  for (const auto& zoom : json.at("zooms")) {
+    fmt::print("{:>5} {:>7} {:>9.2f}\n", zoom.at("zoom").get<int>(),
+               zoom.at("tiles").get<std::int64_t>(), zoom.at("bytes").get<double>() / 1e6);
+  }
+}
+
 void describe_levels(const nlohmann::json& json) {
   const auto& dem = json.at("dem");
   print_row("written by", json.at("generator").get<std::string>());
@@ -102,7 +115,10 @@ void describe_levels(const nlohmann::json& json) {
 void describe_summary(const std::string& text, const std::filesystem::path& out) {
   try {
     const auto json = nlohmann::json::parse(text);
-    json.at("format") == "terrane-geodetic/1" ? describe_terrain(json) : describe_levels(json);
+    const auto format = json.at("format").get<std::string>();
+    format == "terrane-geodetic/1" ? describe_terrain(json)
+    : format == "terrane-raster/1" ? describe_raster(json)
+                                   : describe_levels(json);
   } catch (const nlohmann::json::exception& error) {
     throw InputError(fmt::format("{}: its terrane.json is damaged ({}). Run 'terrane build' again",
                                  out.string(), error.what()));

@@ -37,6 +37,11 @@ void check_finished(const std::filesystem::path& out) {
 /// A tile set of another DEM would fail in a thousand places: say the one thing that is wrong.
 void check_same_dem(const std::filesystem::path& out, const ingest::Dem& dem, Progress& progress) {
   const auto summary = nlohmann::json::parse(tiler::read_whole_file(out / "terrane.json"));
+  if (summary.at("format") == "terrane-raster/1") {
+    throw InputError(
+        fmt::format("{}: holds pictures of heights, which verify does not judge. See terrane info",
+                    out.string()));
+  }
   const auto built_from = summary.at("dem").at("fingerprint").get<std::string>();
   if (ingest::scan_heights(dem, progress).fingerprint == built_from) return;
   throw InputError(

@@ -1,15 +1,14 @@
 #include "ingest/drape.h"
 
-#include <cpl_vsi.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "core/errors.h"
 #include "ingest/drape_image.h"
 #include "ingest/gdal_scope.h"
+#include "ingest/picture_bytes.h"
 
 namespace terrane::ingest {
 namespace {
@@ -59,7 +58,8 @@ class Drape final : public TextureSource {
       image->draw(*picture, samples, texels_per_cell_ * cells_per_texel);
     }
     const GDALDatasetUniquePtr opaque = over_ground(*picture, gdal);
-    return encode(*opaque, gdal);
+    return is_webp_ ? picture_bytes(*opaque, "WEBP", {"QUALITY=80"})
+                    : picture_bytes(*opaque, "JPEG", {"QUALITY=85"});
   }
 
  private:
@@ -117,27 +117,6 @@ class Drape final : public TextureSource {
       transfer(*opaque, band, GF_Write, colour);
     }
     return opaque;
-  }
-
-  std::string encode(GDALDataset& picture, const GdalScope& gdal) const {
-    static std::atomic<int> number = 0;  // of a file in memory; not in the bytes
-    const std::string file = fmt::format("/vsimem/terrane_texture_{}", ++number);
-    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(is_webp_ ? "WEBP" : "JPEG");
-    if (driver == nullptr) {
-      throw InputError(
-          fmt::format("GDAL was built without {}. Choose another --texture-format", media_type_));
-    }
-    const char* options[] = {is_webp_ ? "QUALITY=80" : "QUALITY=85", nullptr};
-    GDALDatasetUniquePtr written(driver->CreateCopy(file.c_str(), &picture, FALSE,
-                                                    const_cast<char**>(options), nullptr, nullptr));
-    if (written == nullptr) throw InputError("a texture cannot be encoded: " + gdal.reason());
-    written.reset();
-    vsi_l_offset size = 0;
-    const GByte* bytes = VSIGetMemFileBuffer(file.c_str(), &size, FALSE);
-    std::string result(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
-    VSIUnlink(file.c_str());
-    VSIUnlink((file + ".aux.xml").c_str());
-    return result;
   }
 
   std::vector<std::unique_ptr<DrapeImage>> images_;  // used by one thread at a time: GdalScope
