@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cctype>
 
-#include "archive/deflate.h"
 #include "archive/read_pmtiles.h"
 #include "archive/read_zip.h"
+#include "core/deflate/deflate.h"
 #include "core/errors.h"
 
 namespace terrane::archive {

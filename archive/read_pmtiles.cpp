@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "archive/deflate.h"
 #include "archive/pmtiles_directory.h"
 #include "archive/pmtiles_header.h"
 #include "archive/tile_path.h"
+#include "core/deflate/deflate.h"
 #include "core/errors.h"
 
 namespace terrane::archive {

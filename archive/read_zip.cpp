@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <map>
 
-#include "archive/deflate.h"
 #include "archive/little_endian.h"
 #include "archive/zip_records.h"
+#include "core/deflate/deflate.h"
 
 namespace terrane::archive {
 namespace {

@@ -6,12 +6,12 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "archive/deflate.h"
 #include "archive/geographic_bounds.h"
 #include "archive/new_file.h"
 #include "archive/pmtiles_directory.h"
 #include "archive/pmtiles_header.h"
 #include "archive/pmtiles_plan.h"
+#include "core/deflate/deflate.h"
 #include "core/errors.h"
 
 namespace terrane::archive {

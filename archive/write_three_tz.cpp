@@ -6,10 +6,10 @@
 #include <array>
 #include <tuple>
 
-#include "archive/deflate.h"
 #include "archive/little_endian.h"
 #include "archive/new_file.h"
 #include "archive/zip_records.h"
+#include "core/deflate/deflate.h"
 
 namespace terrane::archive {
 namespace {

@@ -69,7 +69,8 @@ void refuse_other_formats(const BuildCommand& command, const BuildSettings& sett
                               : command.levels_per_octave      ? "--levels-per-octave"
                               : command.effort                 ? "--effort"
                               : !settings.drape.images.empty() ? "--texture"
-                                                               : nullptr;
+                              : !settings.features.lines.empty() ? "--lines"
+                                                                 : nullptr;
   if (useless == nullptr) return;
   throw ConfigError(fmt::format("{}: has no meaning for --format {}. Leave it away", useless,
                                 settings.geodetic.format));
@@ -127,6 +128,8 @@ void run(const BuildCommand& command, const CommonOptions& common) {
   BuildSettings settings = resolve(command);
   const auto progress = make_progress(common.quiet);
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, *progress);
+  const bool is_native = !settings.geodetic.is_geodetic() && !settings.geodetic.is_raster();
+  if (is_native) raise_to_the_ellipsoid(*dem, settings.geodetic, *progress);
   if (!settings.geodetic.is_geodetic()) {
     settings.build.features = read_features(settings, *dem, *progress);
   }

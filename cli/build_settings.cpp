@@ -84,6 +84,7 @@ const std::map<std::string, Reader>& readers() {
          to.ingest.vertical_unit = unit;
        }},
       {"ingest.crs", [](const Setting& s, BuildSettings& to) { to.ingest.crs = s.text(); }},
+      {"ingest.geoid", [](const Setting& s, BuildSettings& to) { to.geodetic.geoid = s.text(); }},
       {"build.tolerance_m",
        [](const Setting& s, BuildSettings& to) { to.build.tolerance_m = s.real_number(); }},
       {"build.tile_cells",
@@ -94,7 +95,6 @@ const std::map<std::string, Reader>& readers() {
        [](const Setting& s, BuildSettings& to) { to.build.effort = s.whole_number(); }},
       {"build.scheme", [](const Setting& s, BuildSettings& to) { to.geodetic.scheme = s.text(); }},
       {"build.format", [](const Setting& s, BuildSettings& to) { to.geodetic.format = s.text(); }},
-      {"geodetic.geoid", [](const Setting& s, BuildSettings& to) { to.geodetic.geoid = s.text(); }},
       {"geodetic.max_zoom",
        [](const Setting& s, BuildSettings& to) { to.geodetic.max_zoom = s.whole_number(); }},
       {"geodetic.fill_m",
@@ -167,7 +167,6 @@ std::string list_of(const std::vector<std::string>& sources) {
 
 std::string geodetic_toml(const GeodeticSettings& settings) {
   std::string text = "\n[geodetic]\n";
-  if (!settings.geoid.empty()) text += "geoid = " + quoted(settings.geoid) + "\n";
   if (settings.max_zoom) text += fmt::format("max_zoom = {}\n", *settings.max_zoom);
   text += fmt::format("fill_m = {}\n", settings.fill_m);
   return text;
@@ -225,6 +224,9 @@ std::string to_toml(const BuildSettings& settings) {
     text += "vertical_unit = " + quoted(std::string(name_of(*ingest.vertical_unit))) + "\n";
   }
   if (!ingest.crs.empty()) text += "crs = " + quoted(ingest.crs) + "\n";
+  if (!settings.geodetic.geoid.empty()) {
+    text += "geoid = " + quoted(repeatable(settings.geodetic.geoid)) + "\n";
+  }
   text += fmt::format(
       "\n[build]\ntolerance_m = {}\ntile_cells = {}\nlevels_per_octave = {}\neffort = {}\n",
       settings.build.tolerance_m, settings.build.tile_cells, settings.build.levels_per_octave,

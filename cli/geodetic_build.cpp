@@ -97,8 +97,8 @@ void add_geodetic_options(CLI::App& command, GeodeticOptionsGiven& given) {
       "What to write: 3dtiles (native); quantized-mesh or 3dtiles-terrain (geodetic); terrarium or "
       "terrain-rgb: pictures of heights in web mercator [3dtiles, quantized-mesh]");
   command.add_option("--geoid", given.geoid,
-                     "Geodetic: what the heights are over: egm96, a file with a grid, or none: the "
-                     "WGS 84 ellipsoid [as the DEM's CRS says, else none]");
+                     "What the heights are over: egm96, a file with a grid, or none: the WGS 84 "
+                     "ellipsoid [as the DEM's CRS says, else none]");
   command.add_option("--max-zoom", given.max_zoom,
                      "Finest zoom, 0 to 22, geodetic or of pictures [the coarsest that can hold "
                      "the tolerance at the DEM's samples; for pictures, that has its cells]");
@@ -135,10 +135,9 @@ void check(const GeodeticSettings& settings) {
         settings.is_geodetic() ? "quantized-mesh or 3dtiles-terrain" : "3dtiles"));
   }
   if (settings.is_geodetic()) return;
-  const char* const useless = !settings.geoid.empty() ? "--geoid"
-                              : settings.max_zoom     ? "--max-zoom"
-                              : settings.fill_m != 0  ? "--fill"
-                                                      : nullptr;
+  const char* const useless = settings.max_zoom      ? "--max-zoom"
+                              : settings.fill_m != 0 ? "--fill"
+                                                     : nullptr;
   if (useless == nullptr) return;
   throw ConfigError(
       fmt::format("{}: is for --scheme geodetic alone. Leave it away, or add that", useless));
@@ -166,6 +165,18 @@ std::unique_ptr<ingest::Geoid> geoid_of(const ingest::Dem& dem, const GeodeticSe
       "within a few metres of other sea levels. Name a better one with --geoid, or none",
       dem.name(), vertical));
   return ingest::open_geoid("egm96");
+}
+
+void raise_to_the_ellipsoid(ingest::Dem& dem, const GeodeticSettings& settings,
+                            Progress& progress) {
+  if (!dem.place().crs_wkt().empty()) {
+    if (auto geoid = geoid_of(dem, settings, progress)) dem.raise(std::move(geoid));
+    return;
+  }
+  if (settings.geoid.empty() || settings.geoid == "none") return;
+  throw ConfigError(
+      fmt::format("--geoid {}: {} has no CRS, so it lies nowhere on a geoid. Name it with --crs",
+                  settings.geoid, dem.name()));
 }
 
 tiler::BuildResult build_geodetic(const ingest::Dem& dem, const HeightStatistics& statistics,

@@ -44,6 +44,11 @@ void check(const GeodeticSettings& settings);
 std::unique_ptr<ingest::Geoid> geoid_of(const ingest::Dem& dem, const GeodeticSettings& settings,
                                         Progress& progress);
 
+/// Gives a DEM's heights over the ellipsoid, for tiles of its own grid. Nothing is to be done for
+/// one without a CRS, which has no place on the ellipsoid. \throws ConfigError if a geoid was asked
+/// for all the same.
+void raise_to_the_ellipsoid(ingest::Dem& dem, const GeodeticSettings& settings, Progress& progress);
+
 /// Builds a DEM onto the geodetic quadtree.
 /// \param water  layers of polygons for the water mask.
 /// \pre \p out was claimed.

@@ -37,11 +37,6 @@ void check_finished(const std::filesystem::path& out) {
 /// A tile set of another DEM would fail in a thousand places: say the one thing that is wrong.
 void check_same_dem(const std::filesystem::path& out, const ingest::Dem& dem, Progress& progress) {
   const auto summary = nlohmann::json::parse(tiler::read_whole_file(out / "terrane.json"));
-  if (summary.at("format") == "terrane-raster/1") {
-    throw InputError(
-        fmt::format("{}: holds pictures of heights, which verify does not judge. See terrane info",
-                    out.string()));
-  }
   const auto built_from = summary.at("dem").at("fingerprint").get<std::string>();
   if (ingest::scan_heights(dem, progress).fingerprint == built_from) return;
   throw InputError(
@@ -80,6 +75,8 @@ void check_water(const BuildSettings& settings, const ingest::Dem& levelled, Pro
                  verify::VerifyReport& report) {
   if (settings.features.water.empty()) return;
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, progress);
+  NoProgress quietly;
+  raise_to_the_ellipsoid(*dem, settings.geodetic, quietly);
   const verify::WaterFindings found =
       verify::check_water(dem->heights(), levelled.heights(), dem->place(),
                           water_areas(settings.features.water), settings.build.tolerance_m);
@@ -93,9 +90,18 @@ Verdict verify_folder(const std::filesystem::path& out, const VerifyCommand& com
   check_finished(out);
   BuildSettings settings;
   read_settings(out / "build.toml", settings);
+  if (settings.geodetic.is_raster()) {
+    throw InputError(
+        fmt::format("{}: holds pictures of heights, which verify does not judge. See terrane info",
+                    out.string()));
+  }
   if (!command.dem.empty()) settings.dem = command.dem;
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, progress);
-  if (!settings.geodetic.is_geodetic()) read_features(settings, *dem, progress);
+  NoProgress quietly;  // what was assumed was said by the build
+  if (!settings.geodetic.is_geodetic()) {
+    raise_to_the_ellipsoid(*dem, settings.geodetic, quietly);
+    read_features(settings, *dem, progress);
+  }
   check_same_dem(out, *dem, progress);
   const verify::VerifyOptions options{.jobs = command.jobs};
   if (settings.geodetic.is_geodetic() && settings.geodetic.format != "quantized-mesh") {
@@ -109,7 +115,6 @@ Verdict verify_folder(const std::filesystem::path& out, const VerifyCommand& com
     check_water(settings, *dem, progress, report);
     return verdict_of(report);
   }
-  NoProgress quietly;  // what was assumed was said by the build
   const auto geoid = geoid_of(*dem, settings.geodetic, quietly);
   const verify::Undulation undulation = [&](const LonLat& place) {
     return geoid == nullptr ? 0 : geoid->undulation_m(place);

@@ -14,6 +14,8 @@
 
 namespace terrane::ingest {
 
+class Geoid;
+
 /// What a user says about a DEM; each wins over what its files say.
 struct OpenOptions {
   /// Band that holds the heights, from 1. Needed only for files with several.
@@ -76,6 +78,11 @@ class Dem {
 
   /// Puts every sample of some water at its height from now on: see water_level.h.
   void level_water(const WaterRows& water);
+
+  /// Gives heights over the ellipsoid from now on: see raise_heights.h.
+  /// \pre the DEM has a CRS.
+  void raise(std::unique_ptr<Geoid> geoid);
+
   const Georeference& place() const { return *place_; }
 
   /// File name without its folders, or "a.tif and 1 more".

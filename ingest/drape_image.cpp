@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/errors.h"
+#include "ingest/file_contents.h"
 #include "ingest/gdal_scope.h"
 
 namespace terrane::ingest {
@@ -37,6 +38,18 @@ GDALDatasetUniquePtr expanded(GDALDatasetUniquePtr dataset, const std::string& f
   return result;
 }
 
+/// The files that GDAL reads an image from.
+std::vector<std::string> files_of(GDALDataset& dataset) {
+  std::vector<std::string> files;
+  char** const list = dataset.GetFileList();
+  for (char** name = list; name != nullptr && *name != nullptr; ++name) {
+    VSIStatBufL status;
+    if (VSIStatL(*name, &status) == 0 && VSI_ISREG(status.st_mode)) files.emplace_back(*name);
+  }
+  CSLDestroy(list);
+  return files;
+}
+
 void check_depth(GDALDataset& dataset, const std::string& file) {
   for (auto* band : dataset.GetBands()) {
     if (band->GetRasterDataType() == GDT_Byte) continue;
@@ -61,7 +74,9 @@ struct DrapeImage::Cut {
 DrapeImage::DrapeImage(const std::string& file, const Georeference& place)
     : file_(file), place_(place) {
   const GdalScope gdal;
-  dataset_ = expanded(open_image(file, nullptr, gdal), file);
+  GDALDatasetUniquePtr image = open_image(file, nullptr, gdal);
+  files_ = files_of(*image);
+  dataset_ = expanded(std::move(image), file);
   check_depth(*dataset_, file);
   shape_ = {dataset_->GetRasterXSize(), dataset_->GetRasterYSize()};
   Geotransform transform;
@@ -223,6 +238,8 @@ std::string DrapeImage::describe() const {
     text += wkt;
     CPLFree(wkt);
   }
+  if (!files_.empty()) return text + hash_of_files(files_);
+  // a service and no file: a sample of the pixels has to do
   constexpr int kSide = 256;
   std::vector<unsigned char> sample(kSide * kSide);
   for (int n = 1; n <= dataset_->GetRasterCount(); ++n) {

@@ -37,7 +37,8 @@ class DrapeImage {
   /// \throws InputError if it cannot be read.
   void draw(GDALDataset& picture, const Window& samples, double pixels_per_texel);
 
-  /// Shape, place and a sample of the pixels as text.
+  /// Shape, place and a hash of all its files (overviews and the parts of a mosaic too) as text; of
+  /// a service, which has none, 256 x 256 of its pixels.
   std::string describe() const;
 
  private:
@@ -49,6 +50,7 @@ class DrapeImage {
 
   std::string file_;
   const Georeference& place_;
+  std::vector<std::string> files_;  ///< that GDAL reads it from
   GDALDatasetUniquePtr dataset_;
   GridShape shape_;
   Geotransform to_pixel_;                                      ///< from the image's CRS

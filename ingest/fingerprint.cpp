@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -28,6 +29,17 @@ void Fingerprint::add(double number) { add(std::bit_cast<std::uint64_t>(number))
 void Fingerprint::add(std::string_view text) {
   add(static_cast<std::uint64_t>(text.size()));
   for (const char c : text) add(static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
+}
+
+void Fingerprint::add_packed(std::string_view bytes) {
+  add(static_cast<std::uint64_t>(bytes.size()));
+  for (std::size_t at = 0; at < bytes.size(); at += 8) {
+    std::uint64_t word = 0;
+    for (std::size_t k = 0; k < std::min<std::size_t>(8, bytes.size() - at); ++k) {
+      word |= std::uint64_t{static_cast<unsigned char>(bytes[at + k])} << (8 * k);
+    }
+    add(word);
+  }
 }
 
 void Fingerprint::add(std::span<const float> heights_m) {

@@ -21,6 +21,7 @@ class Fingerprint {
   void add(std::uint64_t word);
   void add(double number);                     ///< its bits
   void add(std::string_view text);             ///< its length, then its bytes
+  void add_packed(std::string_view bytes);     ///< their number, then eight to a word
   void add(std::span<const float> heights_m);  ///< bits; all NaN are one, zeros of both signs too
 
   std::uint64_t value() const { return state_; }

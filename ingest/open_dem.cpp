@@ -9,6 +9,7 @@
 #include "ingest/grid_place.h"
 #include "ingest/height_conversion.h"
 #include "ingest/mosaic.h"
+#include "ingest/raise_heights.h"
 #include "ingest/raster_file.h"
 #include "ingest/synthetic.h"
 #include "ingest/water_level.h"
@@ -80,6 +81,10 @@ Dem::Dem(std::string name, DemDescription description, std::vector<SuspectHeight
 
 void Dem::level_water(const WaterRows& water) {
   heights_ = ingest::level_water(std::move(heights_), water);
+}
+
+void Dem::raise(std::unique_ptr<Geoid> geoid) {
+  heights_ = raise_heights(std::move(heights_), *place_, std::move(geoid));
 }
 
 std::unique_ptr<Dem> open_dem(const std::vector<std::string>& sources, const OpenOptions& options,

@@ -14,14 +14,15 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 # A file belongs to the longest of these folders that it lies in.
 MAY_INCLUDE = {
     "core": set(),
+    "core/deflate": set(),
     "ingest": {"core"},
     "hierarchy": {"core"},
     "model": {"core", "ingest", "hierarchy"},
-    "tiler": {"core", "hierarchy"},
+    "tiler": {"core", "core/deflate", "hierarchy"},
     "tiler/verify": {"core"},  # the judge shares nothing with the builder
-    "archive": {"core"},
+    "archive": {"core", "core/deflate"},
     "tiler/welded": {"core", "tiler/verify"},  # reads tiles, builds none
-    "viewer": {"core", "tiler", "archive"},
+    "viewer": {"core", "core/deflate", "tiler", "archive"},
     "viewer/engine": {"core", "hierarchy"},
     "cli": {"core", "archive", "ingest", "hierarchy", "model", "tiler", "tiler/verify",
             "tiler/welded", "viewer"},

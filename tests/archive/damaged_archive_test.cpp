@@ -5,10 +5,10 @@
 #include <random>
 
 #include "archive/archive.h"
-#include "archive/deflate.h"
 #include "archive/little_endian.h"
 #include "archive/pack.h"
 #include "archive/pmtiles_header.h"
+#include "core/deflate/deflate.h"
 #include "core/errors.h"
 #include "tests/temporary_folder.h"
 

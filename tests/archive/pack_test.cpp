@@ -5,10 +5,10 @@
 
 #include <map>
 
-#include "archive/deflate.h"
 #include "archive/packed_folder.h"
 #include "archive/pmtiles_header.h"
 #include "archive/write_three_tz.h"
+#include "core/deflate/deflate.h"
 #include "core/errors.h"
 #include "tests/temporary_folder.h"
 

@@ -118,7 +118,8 @@ class Geodetic(unittest.TestCase):
         self.refuse(USAGE, [*geodetic, "--format", "3dtiles"], "quantized-mesh")
         self.refuse(USAGE, [*geodetic, "--format", "3dtiles-terrain", "--water", self.dem],
                     "--water", "quantized-mesh")
-        self.refuse(USAGE, [*crs, "--geoid", "egm96"], "--geoid", "--scheme geodetic")
+        self.refuse(USAGE, [*crs, "--max-zoom", "9"], "--max-zoom", "--scheme geodetic")
+        self.refuse(USAGE, ["--geoid", "egm96"], "--geoid egm96", "CRS")
         self.refuse(USAGE, [*geodetic, "--geoid", "egm1066"], "egm1066", "egm96")
         self.refuse(USAGE, [*geodetic, "--max-zoom", "99"], "--max-zoom 99")
         self.refuse(USAGE, [*geodetic, "--tolerance", "0.001"], "--tolerance")

@@ -152,6 +152,32 @@ TEST(Drape, SameImagesHaveTheSameFingerprintAndOthersAnother) {
   EXPECT_NE(print(ramp(), "a.tif"), print(changed, "c.tif"));
 }
 
+TEST(Drape, OneOtherPixelIsAnotherFingerprintInAPartOfAMosaicToo) {
+  const RasterFolder folder;
+  const auto dem = dem_in(folder);
+  const auto image = [](int lonely) {
+    SmallRaster raster = ramp();
+    raster.columns = raster.rows = 1000;  // few of its pixels were in a sample of 256 x 256
+    raster.value = [lonely](int column, int row) {
+      return column == 777 && row == 333 ? lonely : column / 5;
+    };
+    raster.geotransform = north_up(kWest_deg, kNorth_deg, kPixel_deg / 10);
+    return raster;
+  };
+  const auto prints = [&](int lonely) {
+    const std::string file = folder.write("image.tif", image(lonely));
+    testing::convert(file, folder.path_of("mosaic.vrt"), {"-of", "VRT"});
+    const auto print = [&](const std::string& name) {
+      return open_drape({{name}}, dem->place(), dem->heights().shape())->fingerprint();
+    };
+    return std::pair{print(file), print(folder.path_of("mosaic.vrt"))};
+  };
+  const auto [file, mosaic] = prints(0);
+  const auto [other_file, other_mosaic] = prints(1);
+  EXPECT_NE(file, other_file);
+  EXPECT_NE(mosaic, other_mosaic);
+}
+
 TEST(Drape, RefusesWhatCannotBeLaidOverTheDem) {
   const RasterFolder folder;
   const auto dem = dem_in(folder);

@@ -5,8 +5,8 @@
 #include <chrono>
 #include <string>
 
-#include "archive/deflate.h"
 #include "archive/pack.h"
+#include "core/deflate/deflate.h"
 #include "core/errors.h"
 #include "tests/temporary_folder.h"
 #include "tests/viewer/gunzip.h"
@@ -165,7 +165,7 @@ class ServeCoded : public ::testing::Test {
     folder_.write("layer.json", "plain layer");
     folder_.write("layer.json.br", "brotli layer");
     folder_.write("layer.json.gz", "gzip layer");
-    folder_.write("0/0/0.terrain", archive::gzip("mesh"));
+    folder_.write("0/0/0.terrain", gzip("mesh"));
     folder_.write("1/0/0.terrain", "plain mesh");
   }
   RawAnswer get(const std::string& target, const std::string& headers = "") const {

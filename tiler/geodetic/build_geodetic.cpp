@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "core/deflate/deflate.h"
 #include "core/errors.h"
-#include "tiler/files/gzip.h"
 #include "tiler/files/whole_file.h"
 #include "tiler/geodetic/build_band.h"
 #include "tiler/geodetic/layer_json.h"

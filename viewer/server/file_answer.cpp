@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "archive/deflate.h"
+#include "core/deflate/deflate.h"
 #include "viewer/server/content_coding.h"
 #include "viewer/server/media_type.h"
 #include "viewer/server/url_path.h"
@@ -109,7 +109,7 @@ class Answering {
 
   // quantized-mesh is stored gzipped by custom, and other tools gzip glb and JSON on disk
   static bool lies_gzipped(const DataSetFile& file, const MediaType& type) {
-    return type.may_lie_gzipped && archive::looks_gzipped(file.content.read(0, 3));
+    return type.may_lie_gzipped && looks_gzipped(file.content.read(0, 3));
   }
 
   /// Nothing if it takes more time than there is.
@@ -127,8 +127,7 @@ class Answering {
     }
     const std::string key = path_ + "\n" + file.tag;
     if (takes_time(bytes, key)) return std::nullopt;
-    const auto text =
-        cache_.get(key, [&] { return archive::gzip(file.content.read_all(), kGzipLevel); });
+    const auto text = cache_.get(key, [&] { return gzip(file.content.read_all(), kGzipLevel); });
     return Representation{FileContent(text), file.tag + "-gz", "gzip"};
   }
 
@@ -153,9 +152,8 @@ class Answering {
   std::optional<Representation> unpacked(const DataSetFile& file) const {
     const std::string key = path_ + "\nplain\n" + file.tag;
     if (takes_time(file.content.bytes(), key)) return std::nullopt;
-    const auto text = cache_.get(key, [&] {
-      return archive::gunzip(file.content.read_all(), kLargestPlainBytes).value_or("");
-    });
+    const auto text = cache_.get(
+        key, [&] { return gunzip(file.content.read_all(), kLargestPlainBytes).value_or(""); });
     return Representation{FileContent(text), file.tag, ""};
   }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace terrane::archive {
+namespace terrane {
 
 /// Compresses; the same content gives the same bytes (no time, no name).
 /// \param level  of zlib, from 1 (fast) to 9 (small).
@@ -24,4 +24,4 @@ bool looks_gzipped(std::string_view bytes);
 /// The checksum of gzip and ZIP.
 std::uint32_t crc32_of(std::string_view content);
 
-}  // namespace terrane::archive
+}  // namespace terrane

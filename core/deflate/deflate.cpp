@@ -1,4 +1,4 @@
-#include "archive/deflate.h"
+#include "core/deflate/deflate.h"
 
 #include <zlib.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <new>
 
-namespace terrane::archive {
+namespace terrane {
 namespace {
 
 constexpr int kGzipWindow = MAX_WBITS + 16;  // zlib's ways to ask for the gzip format
@@ -89,4 +89,4 @@ std::uint32_t crc32_of(std::string_view content) {
   return static_cast<std::uint32_t>(crc32_z(0, input_of(content.data()), content.size()));
 }
 
-}  // namespace terrane::archive
+}  // namespace terrane

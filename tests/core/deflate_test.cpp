@@ -1,8 +1,8 @@
-#include "archive/deflate.h"
+#include "core/deflate/deflate.h"
 
 #include <gtest/gtest.h>
 
-namespace terrane::archive {
+namespace terrane {
 namespace {
 
 std::string long_text() {
@@ -49,4 +49,4 @@ TEST(Crc32, IsThatOfTheStandard) {
 }
 
 }  // namespace
-}  // namespace terrane::archive
+}  // namespace terrane
