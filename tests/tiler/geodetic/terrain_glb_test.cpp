@@ -37,7 +37,8 @@ struct Glb {
   template <class T>
   std::vector<T> values(int accessor, std::size_t components) const {
     const auto& about = json["accessors"][accessor];
-    const std::size_t offset = json["bufferViews"][about["bufferView"].get<int>()]["byteOffset"];
+    const auto& view = json["bufferViews"][about["bufferView"].get<int>()];
+    const std::size_t offset = view.value("byteOffset", std::size_t{0});  // 0 is left out
     std::vector<T> result(about["count"].get<std::size_t>() * components);
     std::memcpy(result.data(), binary.data() + offset, result.size() * sizeof(T));
     return result;
