@@ -42,7 +42,7 @@ void BM_LevelsOfTerrain(benchmark::State& state) {
         {.jobs = static_cast<int>(state.range(1))});
 }
 BENCHMARK(BM_LevelsOfTerrain)
-    ->ArgsProduct({{100, 300, 1200}, {1, 2}})
+    ->ArgsProduct({{100, 300, 1200, 4800}, {1, 2}})
     ->ArgNames({"thousand", "jobs"})
     ->MeasureProcessCPUTime()
     ->UseRealTime()
