@@ -1,5 +1,5 @@
-// cesium_terrain.mjs FOLDER PICTURES: CesiumJS draws every terrain set of FOLDER down to its finest tiles,
-// without an error; the heights that it samples are the DEM's within what terrane states.
+// cesium_terrain.mjs FOLDER PICTURES: CesiumJS draws every terrain set of FOLDER, quantized-mesh or 3D Tiles, down
+// to its finest tiles, without an error; the heights that it samples are the DEM's within what terrane states.
 import {existsSync} from 'node:fs';
 import {readFile} from 'node:fs/promises';
 import {join} from 'node:path';
@@ -12,37 +12,51 @@ const [folder, pictures] = process.argv.slice(2);
 const server = await servePages(cesiumMounts(folder));
 
 await withBrowser(async (context) => {
-  for (const name of await terrainSets(folder)) await look(context, name);
+  for (const name of await terrainSets(folder)) await look(context, name, await quantizedMesh(name));
+  for (const name of await terrainSets(folder, 'tileset.json')) await look(context, name, await tiles3d(name));
 });
 check(server.missing.length === 0, `nothing asked for that is not there ${server.missing.slice(0, 3)}`);
 server.close();
 process.exit(failures() > 0 ? 1 : 0);
 
-async function look(context, name) {
-  const layer = JSON.parse(await readFile(join(folder, name, 'layer.json'), 'utf8'));
-  const summary = JSON.parse(await readFile(join(folder, name, 'terrane.json'), 'utf8'));
+async function json(...path) {
+  return JSON.parse(await readFile(join(folder, ...path), 'utf8'));
+}
+
+async function quantizedMesh(name) {
+  const {bounds, maxzoom, extensions} = await json(name, 'layer.json');
+  return {bounds, maxzoom, hasWater: extensions.includes('watermask')};
+}
+
+async function tiles3d(name) {
+  const points = await json(`${name}_points.json`);
+  const [longitudes, latitudes] = [0, 1].map((k) => points.map((point) => point[k]));
+  const bounds = [Math.min(...longitudes), Math.min(...latitudes), Math.max(...longitudes), Math.max(...latitudes)];
+  return {bounds, maxzoom: (await json(name, 'terrane.json')).zooms.at(-1).zoom, is3dTiles: true};
+}
+
+async function look(context, name, set) {
   const {page, problems} = await open(context, `${server.url}/cesium.html`);
   const asked = new Set();
   page.on('response', (response) => asked.add(new URL(response.url()).pathname));
-  const shown = await page.evaluate(show, {name, bounds: layer.bounds, maxzoom: layer.maxzoom, hasWater: layer.extensions.includes('watermask')});
+  const shown = await page.evaluate(show, {name, ...set});
   const {drawn, colours} = await lookAt(page, await takePicture(page, join(pictures, `cesium_terrain_${name}.png`)), kBackground);
 
   const errors = [...shown.errors, ...problems.errors, ...problems.requests];
   check(errors.length === 0, `${name}: no error ${errors.slice(0, 3)}`);
   check(shown.isLoaded, `${name}: all tiles are loaded`);
-  const finest = [...asked].filter((path) => path.startsWith(`/tiles/${name}/${layer.maxzoom}/`));
-  check(finest.length > 0 && shown.deepest >= layer.maxzoom,
+  const finest = [...asked].filter((path) => RegExp(`^/tiles/${name}/(west/|east/)?${set.maxzoom}/`).test(path));
+  check(finest.length > 0 && shown.deepest >= set.maxzoom,
     `${name}: the finest tiles are drawn (${shown.tiles} tiles to zoom ${shown.deepest}; ${finest.length} of the finest loaded)`);
   check(shown.hasNormals, `${name}: vertex normals are read`);
   check(drawn > 0.2 && colours > 50, `${name}: the picture is not blank (${(100 * drawn).toFixed(0)} %, ${colours} colours)`);
-  await compareHeights(page, name, summary);
+  await compareHeights(page, name, await json(name, 'terrane.json'));
   await page.close();
 }
 
 async function compareHeights(page, name, {zooms}) {
-  const file = join(folder, `${name}_points.json`);
-  if (!existsSync(file)) return;
-  const points = JSON.parse(await readFile(file, 'utf8'));
+  if (!existsSync(join(folder, `${name}_points.json`))) return;
+  const points = await json(`${name}_points.json`);
   const heights = await page.evaluate(sample, points);
   const off = points.map(([, , height], n) => Math.abs(heights[n] - height));
   const {tolerance_m: tolerance} = zooms.at(-1);
@@ -53,10 +67,12 @@ async function compareHeights(page, name, {zooms}) {
 
 // the functions below run in the page
 
-async function show({name, bounds, maxzoom, hasWater}) {
-  const terrainProvider = await Cesium.CesiumTerrainProvider.fromUrl(`/tiles/${name}`, {
-    requestVertexNormals: true, requestWaterMask: hasWater, requestMetadata: true,
-  });
+async function show({name, bounds, maxzoom, hasWater, is3dTiles}) {
+  const terrainProvider = is3dTiles
+    ? await Cesium.Cesium3DTilesTerrainProvider.fromUrl(`/tiles/${name}/tileset.json`, {requestVertexNormals: true})
+    : await Cesium.CesiumTerrainProvider.fromUrl(`/tiles/${name}`, {
+        requestVertexNormals: true, requestWaterMask: hasWater, requestMetadata: true,
+      });
   const errors = [];
   terrainProvider.errorEvent.addEventListener(({message}) => errors.push(message));
   const baseLayer = new Cesium.ImageryLayer(new Cesium.GridImageryProvider({cells: 4, backgroundColor: Cesium.Color.DARKOLIVEGREEN}));
@@ -64,7 +80,8 @@ async function show({name, bounds, maxzoom, hasWater}) {
   window.viewer = viewer;
   const {scene, camera} = viewer;
   const {globe} = scene;
-  globe.preloadAncestors = false;
+  // CesiumJS 1.140 waits for ever to cut up 3D Tiles whose ancestors it left out
+  globe.preloadAncestors = is3dTiles;
   globe.enableLighting = true;
   const [west, south, east, north] = bounds;
   const isGlobe = east - west > 180;
