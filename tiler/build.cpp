@@ -1,7 +1,6 @@
 #include "tiler/build.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_for_each.h>
 #include <tbb/task_arena.h>
 
@@ -11,6 +10,7 @@
 #include <thread>
 
 #include "core/errors.h"
+#include "hierarchy/collapse/within_task.h"
 #include "tiler/build_tile.h"
 #include "tiler/files/output_folder.h"
 #include "tiler/files/whole_file.h"
@@ -200,11 +200,8 @@ class Build {
       records.push_back(std::move(read.descendants));
     }
     BuiltTile built = build_parent(source_, tile, meshes, finished_seams(tile), tolerance_m);
-    // isolated: else a thread that waits here may begin another tile and hold both in memory
-    tbb::this_task_arena::isolate([&] {
-      tbb::parallel_for(std::size_t{0}, ids.size(), [&](std::size_t c) {
-        write_tile(ids[c], meshes[c], built.child_targets[c], records[c]);
-      });
+    hierarchy::for_each_within_task(ids.size(), [&](std::size_t c) {
+      write_tile(ids[c], meshes[c], built.child_targets[c], records[c]);
     });
     for (const auto& of_child : records) {
       finished.descendants.insert(finished.descendants.end(), of_child.begin(), of_child.end());

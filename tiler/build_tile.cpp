@@ -143,7 +143,9 @@ class TileBuild {
     options.smallest_altitude_cells =
         source_.lattice.smallest_altitude_steps() * step_m() / frame_.spacing_m();
 
-    constexpr int kMostTries = 12;
+    // what a reduced reference learns is soon little each time
+    constexpr int kMostTries = 12, kTriesToLearn = 6;
+    int tightened = 0;
     for (int tries = 1;; ++tries) {
       const StrictResult result =
           hierarchy::collapse_strictly(input, reference_.field(), frame_, finer, options);
@@ -154,9 +156,10 @@ class TileBuild {
         return {written_mesh(result.mesh, measured.errors[0]), targets(result)};
       }
       if (tries == kMostTries) refuse(worst_m, tolerance_m);
-      if (reference_.learn(measured.noted)) continue;
+      if (reference_.learn(measured.noted) && tries < kTriesToLearn) continue;
       // gently at first: most are over by a thousandth
-      options.tolerance_m *= std::min(1 - 0.005 * (1 << tries), 0.999 * tolerance_m / worst_m);
+      ++tightened;
+      options.tolerance_m *= std::min(1 - 0.005 * (1 << tightened), 0.999 * tolerance_m / worst_m);
     }
   }
 

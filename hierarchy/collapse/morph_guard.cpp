@@ -1,14 +1,12 @@
 #include "hierarchy/collapse/morph_guard.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <numeric>
 
 #include "hierarchy/collapse/moving_triangle.h"
+#include "hierarchy/collapse/within_task.h"
 
 namespace terrane::hierarchy {
 namespace {
@@ -131,13 +129,10 @@ bool MorphGuard::allows(std::span<const VertexId> core, const Place& target) {
     return true;
   }
   std::atomic<bool> is_sound_so_far = true;
-  // isolated: else a thread that waits here may begin another tile
-  tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(std::size_t{0}, moved_.size(), [&](std::size_t i) {
-      if (is_sound_so_far.load(std::memory_order_relaxed) && !is_sound_at(i)) {
-        is_sound_so_far = false;
-      }
-    });
+  for_each_within_task(moved_.size(), [&](std::size_t i) {
+    if (is_sound_so_far.load(std::memory_order_relaxed) && !is_sound_at(i)) {
+      is_sound_so_far = false;
+    }
   });
   return is_sound_so_far;
 }

@@ -1,8 +1,5 @@
 #include "tiler/tile/measure.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +9,7 @@
 #include <optional>
 
 #include "hierarchy/collapse/sample_field.h"
+#include "hierarchy/collapse/within_task.h"
 
 namespace terrane::tiler {
 namespace {
@@ -369,13 +367,10 @@ Measured measure(std::span<const MeasuredMesh> meshes, const TileSamples& sample
     const LoosePatch loose(frame, samples, window);
     in_patch[k].errors.resize(meshes.size());
     std::vector<std::vector<std::size_t>> noted(meshes.size());
-    // isolated: else a thread that waits here may begin another tile and hold both in memory
-    tbb::this_task_arena::isolate([&] {
-      tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t m) {
-        const Measurement measurement = measured(meshes[m], patch, loose, frame, bend, step_m);
-        in_patch[k].errors[m] = measurement.result();
-        noted[m] = measurement.farther_than(noted_m);
-      });
+    hierarchy::for_each_within_task(meshes.size(), [&](std::size_t m) {
+      const Measurement measurement = measured(meshes[m], patch, loose, frame, bend, step_m);
+      in_patch[k].errors[m] = measurement.result();
+      noted[m] = measurement.farther_than(noted_m);
     });
     std::vector<std::size_t> by_any;
     for (const auto& of_mesh : noted) by_any.insert(by_any.end(), of_mesh.begin(), of_mesh.end());

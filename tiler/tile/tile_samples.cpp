@@ -1,9 +1,8 @@
 #include "tiler/tile/tile_samples.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
+
+#include "hierarchy/collapse/within_task.h"
 
 namespace terrane::tiler {
 namespace {
@@ -78,11 +77,8 @@ void TileSamples::for_each_patch(
     visit(0, patches_[0], *whole_);
     return;
   }
-  // isolated: else a thread that waits here may begin another tile and hold both in memory
-  tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(std::size_t{0}, patch_count(),
-                      [&](std::size_t k) { visit(k, patches_[k], read(patches_[k])); });
-  });
+  hierarchy::for_each_within_task(patch_count(),
+                                  [&](std::size_t k) { visit(k, patches_[k], read(patches_[k])); });
 }
 
 std::size_t TileSamples::patch_of(std::int64_t column, std::int64_t row) const {
