@@ -45,7 +45,7 @@ def build(terrane, dem, side, folder):
 def svg(points):
     """Points (samples, microseconds per sample), samples to a logarithmic scale."""
     low = math.floor(math.log10(min(x for x, _ in points)))
-    high = math.ceil(math.log10(max(x for x, _ in points)))
+    high = max(low + 1, math.ceil(math.log10(max(x for x, _ in points))))
     most = 1.25 * max(y for _, y in points)
 
     def place(x, y):
