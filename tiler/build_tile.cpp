@@ -14,6 +14,7 @@
 #include "hierarchy/mesh/boundary_vertices.h"
 #include "tiler/gltf/terrain_normals.h"
 #include "tiler/seams/join_tiles.h"
+#include "tiler/tile/blend_check.h"
 #include "tiler/tile/measure.h"
 #include "tiler/tile/reference.h"
 #include "tiler/tile/tile_frame.h"
@@ -149,11 +150,14 @@ class TileBuild {
     for (int tries = 1;; ++tries) {
       const StrictResult result =
           hierarchy::collapse_strictly(input, reference_.field(), frame_, finer, options);
-      const Measured measured =
+      Measured measured =
           measure_until_over(measured_meshes(input, finer, finer_points, result), tolerance_m);
       const double worst_m = worst_of(measured);
       if (worst_m <= tolerance_m) {
-        return {written_mesh(result.mesh, measured.errors[0]), targets(result)};
+        measured.noted = left_by_blend(finer, result, options.tolerance_m);
+        if (measured.noted.empty()) {
+          return {written_mesh(result.mesh, measured.errors[0]), targets(result)};
+        }
       }
       if (tries == kMostTries) refuse(worst_m, tolerance_m);
       if (reference_.learn(measured.noted) && tries < kTriesToLearn) continue;
@@ -228,16 +232,26 @@ class TileBuild {
       meshes[0].vertices.push_back({plan_of(vertex.place), world_of(vertex.place)});
     }
     if (finer.places.empty()) return meshes;
-    for (const double t : measured_moments(reference_)) {
-      meshes.push_back({{}, finer.triangles, rim_of(input.vertices, finer.triangles)});
-      for (std::size_t v = 0; v < finer.places.size(); ++v) {
-        const Place& target = result.mesh.vertices[result.target[v]].place;
-        const Eigen::Vector3d from = source_.lattice.world(finer_points[v], tile_.level - 1);
-        meshes.back().vertices.push_back({blend(plan_of(finer.places[v]), plan_of(target), t),
-                                          from + t * (world_of(target) - from)});
-      }
+    constexpr double t = kMeasuredMoment;
+    meshes.push_back({{}, finer.triangles, rim_of(input.vertices, finer.triangles)});
+    for (std::size_t v = 0; v < finer.places.size(); ++v) {
+      const Place& target = result.mesh.vertices[result.target[v]].place;
+      const Eigen::Vector3d from = source_.lattice.world(finer_points[v], tile_.level - 1);
+      meshes.back().vertices.push_back({blend(plan_of(finer.places[v]), plan_of(target), t),
+                                        from + t * (world_of(target) - from)});
     }
     return meshes;
+  }
+
+  /// What a reduced reference let the blend leave.
+  std::vector<hierarchy::FieldSample> left_by_blend(const FinerLevel& finer,
+                                                    const StrictResult& result,
+                                                    double tolerance_m) const {
+    if (reference_.is_whole() || finer.places.empty()) return {};
+    std::vector<Place> to;
+    for (const std::uint32_t v : result.target) to.push_back(result.mesh.vertices[v].place);
+    return samples_left_by({finer.places, to, finer.triangles}, samples_, frame_,
+                           reference_.field().slack_cells, tolerance_m);
   }
 
   Eigen::Vector3d world_of(const Place& place) const {

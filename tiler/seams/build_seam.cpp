@@ -6,6 +6,7 @@
 
 #include "hierarchy/collapse/chain_collapse.h"
 #include "tiler/seams/join_tiles.h"
+#include "tiler/tile/blend_check.h"
 #include "tiler/tile/measure.h"
 #include "tiler/tile/reference.h"
 #include "tiler/tile/tile_frame.h"
@@ -118,10 +119,13 @@ class SeamBuild {
       const ChainResult result =
           hierarchy::collapse_chain(mesh_, chain_, finer_, reference_.field(), frame_, options);
       if (result.collapses == 0) return as_it_was();
-      const auto [errors, noted] =
+      auto [errors, noted] =
           measure(measured_meshes(result), samples_, frame_, step_m(), kNotedShare * tolerance_m);
       const double worst_m = std::ranges::max(errors, {}, &MeasuredError::max_m).max_m;
-      if (worst_m <= kLargestShare * tolerance_m) return chain_of(result);
+      if (worst_m <= kLargestShare * tolerance_m) {
+        noted = left_by_blend(result, options.blend_tolerance_m);
+        if (noted.empty()) return chain_of(result);
+      }
       if (reference_.learn(noted)) continue;
       const double factor = std::min(0.98, kLargestShare * tolerance_m / worst_m);
       options.tolerance_m *= factor;
@@ -260,18 +264,27 @@ class SeamBuild {
     std::vector<MeasuredMesh> meshes{{{}, collapsed_, {}}};
     for (const Place& place : result.places) meshes[0].vertices.push_back(at(place));
     if (finer_.places.empty()) return meshes;
-    for (const double t : measured_moments(reference_)) {
-      std::vector<WorldVertex> moving;
-      for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
-        const WorldVertex& to = meshes[0].vertices[result.target[v]];
-        const WorldVertex from = at_finer(v);
-        moving.push_back({{from.plan.column + t * (to.plan.column - from.plan.column),
-                           from.plan.row + t * (to.plan.row - from.plan.row), 0},
-                          from.world + t * (to.world - from.world)});
-      }
-      meshes.push_back({std::move(moving), strip_.triangles, {}});
+    constexpr double t = kMeasuredMoment;
+    std::vector<WorldVertex> moving;
+    for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
+      const WorldVertex& to = meshes[0].vertices[result.target[v]];
+      const WorldVertex from = at_finer(v);
+      moving.push_back({{from.plan.column + t * (to.plan.column - from.plan.column),
+                         from.plan.row + t * (to.plan.row - from.plan.row), 0},
+                        from.world + t * (to.world - from.world)});
     }
+    meshes.push_back({std::move(moving), strip_.triangles, {}});
     return meshes;
+  }
+
+  /// What a reduced reference let the blend leave.
+  std::vector<hierarchy::FieldSample> left_by_blend(const ChainResult& result,
+                                                    double tolerance_m) const {
+    if (reference_.is_whole() || finer_.places.empty()) return {};
+    std::vector<Place> to;
+    for (const std::uint32_t v : result.target) to.push_back(result.places[v]);
+    return samples_left_by({finer_.places, to, strip_.triangles}, samples_, frame_,
+                           reference_.field().slack_cells, tolerance_m);
   }
 
   WorldVertex at(const Place& place) const {

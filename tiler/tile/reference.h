@@ -36,12 +36,9 @@ class Reference {
   bool is_whole_ = true;
 };
 
-/// The moments of a blend at which it is measured in the world. Every sample of the reference has
-/// been held against the blend at every moment; what a reduced one leaves out has not.
-inline std::span<const double> measured_moments(const Reference& reference) {
-  static constexpr double kMoments[] = {0.5, 0.125, 0.25, 0.375, 0.625, 0.75, 0.875};
-  return std::span(kMoments).first(reference.is_whole() ? 1 : std::size(kMoments));
-}
+/// The moment of a blend at which it is measured in the world; over the grid it is judged at every
+/// moment, where the reference is reduced by blend_check.h.
+inline constexpr double kMeasuredMoment = 0.5;
 
 /// Share of the tolerance beyond which samples are worth learning: they are over it soon.
 inline constexpr double kNotedShare = 0.9;
