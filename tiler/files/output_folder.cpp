@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
+#include "tiler/files/begin_output.h"
 #include "tiler/files/whole_file.h"
 #include "tiler/seams/seam.h"
 
@@ -96,18 +97,7 @@ std::string OutputFolder::finished_key() const {
   }
 }
 
-void OutputFolder::begin(const std::string& key) const {
-  std::error_code error;
-  const fs::path key_file = work() / "key";
-  if (fs::exists(key_file, error) && read_whole_file(key_file) == key) return;
-  fs::remove(summary(), error);
-  fs::remove(tileset(), error);
-  for (const char* ours : {"tiles", "content", "tilesets", "subtrees"}) {
-    fs::remove_all(root_ / ours, error);
-  }
-  fs::remove_all(work(), error);
-  write_whole_file(key_file, key);
-}
+void OutputFolder::begin(const std::string& key) const { begin_output(root_, key); }
 
 void OutputFolder::end() const {
   std::error_code error;

@@ -10,6 +10,7 @@
 
 #include "core/deflate/deflate.h"
 #include "core/errors.h"
+#include "tiler/files/begin_output.h"
 #include "tiler/files/whole_file.h"
 #include "tiler/geodetic/build_band.h"
 #include "tiler/geodetic/layer_json.h"
@@ -72,7 +73,7 @@ class GeodeticBuild {
   }
 
   BuildResult run() {
-    begin();
+    begin_output(out_, key_);
     const int top = coarsest_from_finest();
     add_band({.tiles = tiles_.at(tiles_.zoom - top).refined(tiles_.zoom), .wanted = tiles_}, top);
     for (int zoom = tiles_.zoom - top - 1; zoom >= 0; --zoom) {
@@ -169,23 +170,6 @@ class GeodeticBuild {
     return static_cast<std::int64_t>(bytes.size());
   }
 
-  /// Keeps the unfinished work of an earlier run with the same key; else clears the way.
-  void begin() const {
-    std::error_code error;
-    const fs::path key_file = work_of(out_) / "key";
-    if (fs::exists(key_file, error) && read_whole_file(key_file) == key_) return;
-    fs::remove(summary_of(out_), error);
-    for (const auto format : {TerrainFormat::kQuantizedMesh, TerrainFormat::k3dTiles}) {
-      fs::remove(entrance_of(out_, format), error);
-    }
-    for (int zoom = 0; zoom < 40; ++zoom) {
-      for (const fs::path& folder : folders_of(out_, zoom)) fs::remove_all(folder, error);
-    }
-    fs::remove_all(out_ / "subtrees", error);
-    fs::remove_all(work_of(out_), error);
-    write_whole_file(key_file, key_);
-  }
-
   BuildResult finish() const {
     if (options_.format == TerrainFormat::k3dTiles) {
       for (const OutputFile& file : terrain_tileset(
@@ -274,10 +258,7 @@ bool is_finished(const fs::path& out, const std::string& key) {
     for (const auto& zoom : summary.at("zooms")) {
       std::int64_t bytes = 0;
       for (const fs::path& folder : folders_of(out, zoom.at("zoom").get<int>())) {
-        if (!fs::exists(folder)) continue;
-        for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-          if (entry.is_regular_file()) bytes += static_cast<std::int64_t>(entry.file_size());
-        }
+        bytes += bytes_below(folder);
       }
       if (bytes != zoom.at("bytes").get<std::int64_t>()) return false;
     }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/errors.h"
+#include "tiler/files/begin_output.h"
 #include "tiler/files/whole_file.h"
 #include "tiler/raster/half_size.h"
 
@@ -15,8 +16,6 @@ namespace terrane::tiler {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int kMostZooms = 40;
 
 fs::path summary_of(const fs::path& out) { return out / "terrane.json"; }
 fs::path tile_json_of(const fs::path& out) { return out / "tiles.json"; }
@@ -27,9 +26,9 @@ struct ZoomSummary {
 };
 
 /// The tiles that hold something at each zoom, round the Earth as often as they go.
-class Pyramid {
+class MercatorPyramid {
  public:
-  explicit Pyramid(const MercatorTiles& finest) : finest_(finest) {}
+  explicit MercatorPyramid(const MercatorTiles& finest) : finest_(finest) {}
 
   int finest_zoom() const { return finest_.zoom; }
 
@@ -71,7 +70,7 @@ class RasterBuild {
         zooms_(static_cast<std::size_t>(pyramid_.finest_zoom()) + 1) {}
 
   BuildResult run() {
-    begin();
+    begin_output(out_, key_);
     progress_.begin("writing tiles", pyramid_.count());
     add_tile(0, 0, 0);
     write_whole_file(tile_json_of(out_), tile_json());
@@ -87,19 +86,6 @@ class RasterBuild {
   }
 
  private:
-  /// Keeps the tiles of an earlier run with the same key; else clears the way.
-  void begin() const {
-    std::error_code error;
-    const fs::path key_file = out_ / ".work" / "key";
-    if (fs::exists(key_file, error) && read_whole_file(key_file) == key_) return;
-    for (const char* ours : {"terrane.json", "tiles.json", "layer.json", "tileset.json", "tiles",
-                             "content", "tilesets", "subtrees", ".work"}) {
-      fs::remove_all(out_ / ours, error);
-    }
-    for (int zoom = 0; zoom < kMostZooms; ++zoom) fs::remove_all(zoom_of(out_, zoom), error);
-    write_whole_file(key_file, key_);
-  }
-
   /// Writes a tile and all below it.
   /// \return its heights.
   std::vector<float> add_tile(int zoom, std::int64_t x, std::int64_t y) {
@@ -174,7 +160,7 @@ class RasterBuild {
   const fs::path& out_;
   Progress& progress_;
   std::string key_;
-  Pyramid pyramid_;
+  MercatorPyramid pyramid_;
   std::vector<ZoomSummary> zooms_;
 };
 
@@ -191,11 +177,7 @@ bool is_finished_raster(const fs::path& out, const std::string& key) {
     const auto summary = nlohmann::json::parse(read_whole_file(summary_of(out)));
     if (summary.at("key") != key || !fs::exists(tile_json_of(out))) return false;
     for (const auto& zoom : summary.at("zooms")) {
-      std::int64_t bytes = 0;
-      for (const auto& entry :
-           fs::recursive_directory_iterator(zoom_of(out, zoom.at("zoom").get<int>()))) {
-        if (entry.is_regular_file()) bytes += static_cast<std::int64_t>(entry.file_size());
-      }
+      const std::int64_t bytes = bytes_below(zoom_of(out, zoom.at("zoom").get<int>()));
       if (bytes != zoom.at("bytes").get<std::int64_t>()) return false;
     }
     return true;

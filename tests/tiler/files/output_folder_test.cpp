@@ -43,6 +43,17 @@ TEST(OutputFolder, BeginKeepsWorkOfTheSameKeyAndDropsThatOfAnother) {
   EXPECT_FALSE(std::filesystem::exists(out.finished_tile({0, 1, 2})));
 }
 
+TEST(OutputFolder, BeginRemovesWhatAnyOtherFormatLeft) {
+  const TemporaryFolder folder;
+  for (const char* name : {"layer.json", "tiles.json", "7/3/2.terrain", "west/0/0/0.glb"}) {
+    write_whole_file(folder.path() / name, "old");
+  }
+  OutputFolder(folder.path()).begin("key");
+  for (const char* name : {"layer.json", "tiles.json", "7", "west"}) {
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / name)) << name;
+  }
+}
+
 TEST(OutputFolder, BeginLeavesFilesOfOthersAlone) {
   const TemporaryFolder folder;
   write_whole_file(folder.path() / "thesis.txt", "precious");
