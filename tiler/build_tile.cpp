@@ -150,11 +150,12 @@ class TileBuild {
     for (int tries = 1;; ++tries) {
       const StrictResult result =
           hierarchy::collapse_strictly(input, reference_.field(), frame_, finer, options);
-      Measured measured =
-          measure_until_over(measured_meshes(input, finer, finer_points, result), tolerance_m);
+      Measured measured = measure(measured_meshes(input, finer, finer_points, result), samples_,
+                                  frame_, step_m(), kNotedShare * tolerance_m);
       const double worst_m = worst_of(measured);
       if (worst_m <= tolerance_m) {
-        measured.noted = left_by_blend(finer, result, options.tolerance_m);
+        // what seams decided was held to the whole tolerance, and cannot be held to less
+        measured.noted = left_by_blend(finer, result, tolerance_m);
         if (measured.noted.empty()) {
           return {written_mesh(result.mesh, measured.errors[0]), targets(result)};
         }
@@ -181,20 +182,6 @@ class TileBuild {
 
   static double worst_of(const Measured& measured) {
     return std::ranges::max(measured.errors, {}, &MeasuredError::max_m).max_m;
-  }
-
-  /// The first mesh alone as long as the tile's reference has to learn from it, then all of them.
-  Measured measure_until_over(std::span<const MeasuredMesh> meshes, double tolerance_m) const {
-    const auto measure_some = [&](std::span<const MeasuredMesh> some) {
-      return measure(some, samples_, frame_, step_m(), kNotedShare * tolerance_m);
-    };
-    if (!reference_.field().is_reduced() || meshes.size() == 1) return measure_some(meshes);
-    Measured all = measure_some(meshes.first(1));
-    if (worst_of(all) > tolerance_m) return all;
-    const Measured blends = measure_some(meshes.subspan(1));
-    all.errors.insert(all.errors.end(), blends.errors.begin(), blends.errors.end());
-    all.noted.insert(all.noted.end(), blends.noted.begin(), blends.noted.end());
-    return all;
   }
 
   TileMesh written_mesh(const TerrainMesh& terrain, const MeasuredError& error) const {
@@ -267,6 +254,12 @@ class TileBuild {
   }
 
   [[noreturn]] void refuse(double measured_m, double tolerance_m) const {
+    if (measured_m <= tolerance_m) {
+      throw ConfigError(fmt::format(
+          "tile {}: leaves the {:.3g} m around the DEM on its way to the next level. Use a larger "
+          "--tolerance, or a smaller --tile-cells",
+          path_of(tile_), tolerance_m));
+    }
     throw ConfigError(fmt::format(
         "tile {}: is {:.3g} m from the DEM where {:.3g} m is asked for, as its positions are "
         "rounded to {:.3g} m in plan and {:.3g} m in height. Use a larger --tolerance, or a "
