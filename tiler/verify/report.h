@@ -75,6 +75,10 @@ struct VerifyReport {
   bool holds() const;
 };
 
+/// What all reports end with: the problems, a line each, and whether the invariants hold.
+std::string verdict_text(const std::vector<std::string>& problems, std::int64_t left_out,
+                         bool holds);
+
 /// Tables for a terminal, the problems below them. Ends with a newline.
 std::string to_text(const VerifyReport& report);
 

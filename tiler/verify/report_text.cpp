@@ -114,6 +114,14 @@ Json to_json(const LevelReport& level) {
 
 }  // namespace
 
+std::string verdict_text(const std::vector<std::string>& problems, std::int64_t left_out,
+                         bool holds) {
+  std::string text = "\n";
+  for (const std::string& problem : problems) text += problem + "\n";
+  if (left_out > 0) text += fmt::format("... and {} more problems\n", left_out);
+  return text + (holds ? "All invariants hold.\n" : "NOT all invariants hold.\n");
+}
+
 std::string to_text(const VerifyReport& report) {
   std::string text;
   const Buffer out = std::back_inserter(text);
@@ -125,13 +133,7 @@ std::string to_text(const VerifyReport& report) {
     fmt::format_to(out, "\n{} samples in water, {} samples at another height than their own\n",
                    report.samples_under_water, report.water_samples_wrong);
   }
-  text += '\n';
-  for (const std::string& problem : report.problems) fmt::format_to(out, "{}\n", problem);
-  if (report.problems_left_out > 0) {
-    fmt::format_to(out, "... and {} more problems\n", report.problems_left_out);
-  }
-  text += report.holds() ? "All invariants hold.\n" : "NOT all invariants hold.\n";
-  return text;
+  return text + verdict_text(report.problems, report.problems_left_out, report.holds());
 }
 
 std::string to_json(const VerifyReport& report) {

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "tiler/verify/report.h"
+
 namespace terrane::verify {
 namespace {
 
@@ -69,13 +71,7 @@ std::string to_text(const TerrainReport& report) {
     for (const std::int64_t count : zoom.faults) fmt::format_to(out, " {:>10}", count);
     text += '\n';
   }
-  text += '\n';
-  for (const std::string& problem : report.problems) fmt::format_to(out, "{}\n", problem);
-  if (report.problems_left_out > 0) {
-    fmt::format_to(out, "... and {} more problems\n", report.problems_left_out);
-  }
-  text += report.holds() ? "All invariants hold.\n" : "NOT all invariants hold.\n";
-  return text;
+  return text + verdict_text(report.problems, report.problems_left_out, report.holds());
 }
 
 std::string to_json(const TerrainReport& report) {
