@@ -10,6 +10,8 @@
 #include "hierarchy/collapse/strict_collapse.h"
 #include "hierarchy/mesh/boundary_vertices.h"
 #include "hierarchy/mesh/grid_triangles.h"
+#include "tiler/simplify_tiles.h"
+#include "tiler/tile/grid_census.h"
 
 namespace terrane::tiler {
 namespace {
@@ -22,6 +24,8 @@ using hierarchy::VertexKind;
 
 // what the collapse and the measurement may differ by in rounding: 9 km take 10^-11 m in doubles
 constexpr double kRounding_m = 1e-9;
+// orientation tests of triangles as wide as this are exact
+constexpr std::int64_t kExactCells = 32768;
 
 /// Writes places over the flat grid itself: plan as it is, heights in steps.
 class FlatPlacer final : public hierarchy::Placer {
@@ -39,14 +43,17 @@ class FlatPlacer final : public hierarchy::Placer {
 };
 
 void check_size(GridShape shape) {
-  if (shape.columns - 1 <= kMostCellsPerSide && shape.rows - 1 <= kMostCellsPerSide &&
-      shape.columns * shape.rows <= kMostSamplesInOneMesh) {
-    return;
-  }
+  if (shape.columns - 1 <= kMostCellsPerSide && shape.rows - 1 <= kMostCellsPerSide) return;
   throw InputError(fmt::format(
-      "the DEM has {} x {} samples, and one mesh holds {} at most, {} along a side. Cut the DEM "
-      "with gdal_translate -srcwin, or make tiles with terrane build",
-      shape.columns, shape.rows, kMostSamplesInOneMesh, kMostCellsPerSide + 1));
+      "the DEM has {} x {} samples, and one mesh spans {} at most along a side. Cut the DEM with "
+      "gdal_translate -srcwin, or make tiles with terrane build",
+      shape.columns, shape.rows, kMostCellsPerSide + 1));
+}
+
+/// Can it be simplified at once?
+bool is_small(GridShape shape, const SimplifyOptions& options) {
+  return shape.columns - 1 <= kExactCells && shape.rows - 1 <= kExactCells &&
+         shape.columns * shape.rows <= options.most_samples_at_once;
 }
 
 SampleField field_of(const HeightGrid& grid) {
@@ -102,6 +109,12 @@ hierarchy::LineTolerance line_tolerance(const SimplifyOptions& options) {
           features.row_m};
 }
 
+[[noreturn]] void refuse_empty() {
+  throw InputError(
+      "no three neighbouring samples of the DEM have data: there is no terrain. "
+      "Check --nodata");
+}
+
 void judge(const GridError& error, std::int64_t samples, const SimplifyOptions& options) {
   if (error.samples != samples || error.folded > 0) {
     throw std::logic_error(fmt::format("{} of {} samples covered, {} triangles folded",
@@ -112,6 +125,38 @@ void judge(const GridError& error, std::int64_t samples, const SimplifyOptions& 
       fmt::format("--tolerance {}: cannot be kept where heights are written in steps of {} m (the "
                   "mesh is {:.3g} m off). Use a larger one, or write ply",
                   options.tolerance_m, 1 / options.height_steps_per_m, error.max_m));
+}
+
+SimplifiedTerrain simplify_at_once(const HeightSource& heights, const SimplifyOptions& options,
+                                   double tolerance_m, Progress& progress) {
+  const GridShape shape = heights.shape();
+  const HeightGrid grid = heights.read({0, 0, shape.columns, shape.rows});
+  const FlatPlacer placer(options.height_steps_per_m);
+  const TerrainMesh full = full_terrain(grid, options.features.lines, placer);
+  if (full.triangles.empty()) refuse_empty();
+
+  progress.begin("simplify", 1);
+  SimplifiedTerrain result;
+  result.input_triangles = std::ssize(full.triangles);
+  const hierarchy::StrictOptions strict{
+      .tolerance_m = tolerance_m, .effort = options.effort, .lines = line_tolerance(options)};
+  result.mesh = hierarchy::collapse_strictly(full, field_of(grid), placer, {}, strict).mesh;
+  result.error = measure_over_grid(result.mesh, grid);
+  judge(result.error, sample_count(full), options);
+  progress.advance(1);
+  return result;
+}
+
+SimplifiedTerrain simplify_by_tiles(const HeightSource& heights, const SimplifyOptions& options,
+                                    double tolerance_m, Progress& progress) {
+  const GridCensus census = count_grid(heights);
+  if (census.triangles == 0) refuse_empty();
+  SimplifiedTerrain result;
+  result.input_triangles = census.triangles;
+  result.mesh = simplify_in_tiles(heights, options, tolerance_m, progress);
+  result.error = measure_over_dem(result.mesh, heights);
+  judge(result.error, census.samples, options);
+  return result;
 }
 
 }  // namespace
@@ -130,28 +175,11 @@ void check(const SimplifyOptions& options) {
 SimplifiedTerrain simplify(const HeightSource& heights, const SimplifyOptions& options,
                            Progress& progress) {
   check(options);
-  const GridShape shape = heights.shape();
-  check_size(shape);
-  const HeightGrid grid = heights.read({0, 0, shape.columns, shape.rows});
-  const FlatPlacer placer(options.height_steps_per_m);
-  const TerrainMesh full = full_terrain(grid, options.features.lines, placer);
-  if (full.triangles.empty()) {
-    throw InputError(
-        "no three neighbouring samples of the DEM have data: there is no terrain. "
-        "Check --nodata");
-  }
-
-  progress.begin("simplify", 1);
+  check_size(heights.shape());
   const double wanted_m = std::max(options.tolerance_m - kRounding_m, options.tolerance_m / 2);
-  SimplifiedTerrain result;
-  result.input_triangles = std::ssize(full.triangles);
-  const hierarchy::StrictOptions strict{
-      .tolerance_m = wanted_m, .effort = options.effort, .lines = line_tolerance(options)};
-  result.mesh = hierarchy::collapse_strictly(full, field_of(grid), placer, {}, strict).mesh;
-  result.error = measure_over_grid(result.mesh, grid);
-  judge(result.error, sample_count(full), options);
-  progress.advance(1);
-  return result;
+  return is_small(heights.shape(), options)
+             ? simplify_at_once(heights, options, wanted_m, progress)
+             : simplify_by_tiles(heights, options, wanted_m, progress);
 }
 
 }  // namespace terrane::tiler

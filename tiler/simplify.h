@@ -17,6 +17,9 @@ struct SimplifyOptions {
   double height_steps_per_m = 1e6;
   /// Lines that stay edges of the mesh, within tolerance_m of their place in plan.
   GridFeatures features;
+  /// Samples up to which the DEM is done at once, for the fewest triangles; a larger one is done in
+  /// tiles (simplify_tiles.h). About 330 bytes a sample make 8 GB.
+  std::int64_t most_samples_at_once = 25'000'000;
 };
 
 /// One mesh over a whole DEM, without tiles and levels.
@@ -26,10 +29,8 @@ struct SimplifiedTerrain {
   GridError error;  ///< of mesh, measured anew over every sample
 };
 
-/// Largest DEM that becomes one mesh: orientation tests in plan are exact up to here, and about 330
-/// bytes a sample make 8 GB.
-inline constexpr std::int64_t kMostCellsPerSide = 32768;
-inline constexpr std::int64_t kMostSamplesInOneMesh = 25'000'000;
+/// Most cells along a side of a DEM: what GridPoint counts to.
+inline constexpr std::int64_t kMostCellsPerSide = 131'071;
 
 /// \throws ConfigError that names the setting, if one is out of range.
 void check(const SimplifyOptions& options);

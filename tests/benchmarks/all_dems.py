@@ -22,7 +22,7 @@ DEMS = (
     ("crater_lake/crater_0513_nad27.vrt",),
     ("crater_lake/N42W123.hgt",),
     ("crater_lake/N42W123.hgt", "--water", "crater_lake/crater_lake_shoreline.gpkg"),
-    ("crater_lake/craterlake-bathymetry-elev-16bit-30m_nodata.vrt",),
+    ("crater_lake/craterlake-bathymetry_nodata.vrt",),
     ("awkward/N46E008.tif",),
     ("awkward/vancouver_N49W124_N49W123.vrt",),
     ("awkward/cape_town_srtm_sea_nodata.tif",),

@@ -11,6 +11,7 @@ namespace {
 using hierarchy::GridPoint;
 using hierarchy::kUnitsPerCell;
 using hierarchy::orient2d;
+using hierarchy::TerrainMesh;
 using hierarchy::TerrainVertex;
 
 constexpr double kUnmeasured = -1;
@@ -36,6 +37,7 @@ void clip(Span& span, GridPoint a, GridPoint b, std::int64_t row) {
   if (per_column == 0 && at_zero < 0) span.last = span.first - 1;
 }
 
+/// The samples of one grid, and how far a mesh is from them.
 class Measurement {
  public:
   explicit Measurement(const HeightGrid& grid)
@@ -44,16 +46,14 @@ class Measurement {
   void add(const TerrainVertex& a, const TerrainVertex& b, const TerrainVertex& c) {
     const std::array<GridPoint, 3> p{a.place.plan, b.place.plan, c.place.plan};
     const std::int64_t area = orient2d(p[0], p[1], p[2]);
-    if (area <= 0) {
-      ++result_.folded;
-      return;
-    }
+    if (area <= 0) return;
+    const Window& window = grid_.window;
     const auto [low, high] = std::ranges::minmax({-p[0].y, -p[1].y, -p[2].y});
-    const std::int64_t first_row = std::max<std::int64_t>(0, ceil_div(low, kUnitsPerCell));
+    const std::int64_t first_row = std::max(window.row, ceil_div(low, kUnitsPerCell));
     const std::int64_t last_row =
-        std::min<std::int64_t>(grid_.window.rows - 1, floor_div(high, kUnitsPerCell));
+        std::min(window.row + window.rows - 1, floor_div(high, kUnitsPerCell));
     for (std::int64_t row = first_row; row <= last_row; ++row) {
-      Span span{0, grid_.window.columns - 1};
+      Span span{window.column, window.column + window.columns - 1};
       for (std::size_t k = 0; k < 3; ++k) clip(span, p[k], p[(k + 1) % 3], row);
       for (std::int64_t column = span.first; column <= span.last; ++column) {
         const GridPoint at{static_cast<std::int32_t>(column * kUnitsPerCell),
@@ -64,44 +64,75 @@ class Measurement {
         const double height_m =
             (wa * a.place.height_m + wb * b.place.height_m + wc * c.place.height_m) /
             static_cast<double>(area);
-        double& worst_m = worst_m_[static_cast<std::size_t>(row * grid_.window.columns + column)];
+        double& worst_m = worst_m_[static_cast<std::size_t>((row - window.row) * window.columns +
+                                                            column - window.column)];
         const double wanted_m = grid_.heights_m[&worst_m - worst_m_.data()];
         if (!std::isnan(wanted_m)) worst_m = std::max(worst_m, std::abs(height_m - wanted_m));
       }
     }
   }
 
-  GridError result() {
-    double sum_of_squares_m2 = 0;
+  void add(const TerrainMesh& mesh) {
+    for (const auto& [a, b, c] : mesh.triangles) {
+      add(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+    }
+  }
+
+  /// Adds what was found to \p error, whose rms_m holds the sum of squares meanwhile.
+  void report(GridError& error) const {
     for (std::size_t i = 0; i < worst_m_.size(); ++i) {
       if (worst_m_[i] == kUnmeasured) {
-        result_.uncovered += std::isnan(grid_.heights_m[i]) ? 0 : 1;
+        error.uncovered += std::isnan(grid_.heights_m[i]) ? 0 : 1;
         continue;
       }
-      ++result_.samples;
-      result_.max_m = std::max(result_.max_m, worst_m_[i]);
-      sum_of_squares_m2 += worst_m_[i] * worst_m_[i];
+      ++error.samples;
+      error.max_m = std::max(error.max_m, worst_m_[i]);
+      error.rms_m += worst_m_[i] * worst_m_[i];
     }
-    if (result_.samples > 0) {
-      result_.rms_m = std::sqrt(sum_of_squares_m2 / static_cast<double>(result_.samples));
-    }
-    return result_;
   }
 
  private:
   const HeightGrid& grid_;
   std::vector<double> worst_m_;
-  GridError result_;
 };
+
+std::int64_t folded_triangles(const TerrainMesh& mesh) {
+  return std::ranges::count_if(mesh.triangles, [&](const hierarchy::Corners& c) {
+    return orient2d(mesh.vertices[c[0]].place.plan, mesh.vertices[c[1]].place.plan,
+                    mesh.vertices[c[2]].place.plan) <= 0;
+  });
+}
+
+/// Turns the sum of squares in rms_m into their mean's root.
+void finish(GridError& error) {
+  if (error.samples > 0) error.rms_m = std::sqrt(error.rms_m / static_cast<double>(error.samples));
+}
 
 }  // namespace
 
-GridError measure_over_grid(const hierarchy::TerrainMesh& mesh, const HeightGrid& grid) {
+GridError measure_over_grid(const TerrainMesh& mesh, const HeightGrid& grid) {
+  GridError error{.folded = folded_triangles(mesh)};
   Measurement measurement(grid);
-  for (const auto& [a, b, c] : mesh.triangles) {
-    measurement.add(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+  measurement.add(mesh);
+  measurement.report(error);
+  finish(error);
+  return error;
+}
+
+GridError measure_over_dem(const TerrainMesh& mesh, const HeightSource& heights,
+                           std::int64_t samples_at_once) {
+  const GridShape shape = heights.shape();
+  const std::int64_t rows_at_once = std::max<std::int64_t>(1, samples_at_once / shape.columns);
+  GridError error{.folded = folded_triangles(mesh)};
+  for (std::int64_t row = 0; row < shape.rows; row += rows_at_once) {
+    const HeightGrid strip =
+        heights.read({0, row, shape.columns, std::min(rows_at_once, shape.rows - row)});
+    Measurement measurement(strip);
+    measurement.add(mesh);
+    measurement.report(error);
   }
-  return measurement.result();
+  finish(error);
+  return error;
 }
 
 }  // namespace terrane::tiler

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "core/height_grid.h"
+#include "core/height_source.h"
 #include "hierarchy/collapse/terrain_mesh.h"
 
 namespace terrane::tiler {
@@ -21,8 +22,14 @@ struct GridError {
 /// Exact: whether a sample lies under a triangle is decided in integers, so that none is missed on
 /// an edge. A sample under several triangles counts once, with the largest distance.
 ///
-/// \param grid  sample (0, 0) of the mesh is the first of grid.window; NaN is no sample.
-/// \pre the mesh spans at most 32,768 cells a side.
+/// \param mesh  plan is counted from sample (0, 0) of the DEM.
+/// \param grid  NaN is no sample.
+/// \pre every triangle spans at most 32,768 cells a side.
 GridError measure_over_grid(const hierarchy::TerrainMesh& mesh, const HeightGrid& grid);
+
+/// The same over a whole DEM, of which a strip of rows is in memory at a time.
+/// \throws InputError if it cannot be read.
+GridError measure_over_dem(const hierarchy::TerrainMesh& mesh, const HeightSource& heights,
+                           std::int64_t samples_at_once = 16 << 20);
 
 }  // namespace terrane::tiler

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "tests/tiler/test_dem.h"
+
 namespace terrane::tiler {
 namespace {
 
@@ -87,6 +89,25 @@ TEST(MeasureOverGrid, CountsTrianglesThatAreTurnedOverOrHaveNoArea) {
   mesh.triangles.push_back({0, 2, 1});
   mesh.triangles.push_back({0, 0, 2});
   EXPECT_EQ(measure_over_grid(mesh, flat_grid(5, 0)).folded, 2);
+}
+
+TEST(MeasureOverGrid, AWindowIsPartOfTheDem) {
+  HeightGrid grid{{2, 3, 2, 1}, {10, 13}};
+  const GridError error = measure_over_grid(square(4, 10), grid);
+  EXPECT_EQ(error.samples, 2);
+  EXPECT_EQ(error.max_m, 3);
+}
+
+TEST(MeasureOverDem, StripsCountEverySampleOnce) {
+  const testing::FunctionDem dem({5, 5},
+                                 [](auto c, auto r) { return c == 1 && r == 2 ? 13.0 : 10.0; });
+  for (const std::int64_t samples_at_once : {1, 5, 10, 100}) {
+    const GridError error = measure_over_dem(square(4, 10), dem, samples_at_once);
+    EXPECT_EQ(error.samples, 25);
+    EXPECT_EQ(error.uncovered, 0);
+    EXPECT_EQ(error.max_m, 3);
+    EXPECT_DOUBLE_EQ(error.rms_m, std::sqrt(9.0 / 25));
+  }
 }
 
 }  // namespace
