@@ -12,6 +12,7 @@
 #include "cli/tile_options.h"
 #include "core/errors.h"
 #include "ingest/scan.h"
+#include "tiler/dem_size.h"
 #include "tiler/files/output_folder.h"
 #include "tiler/files/whole_file.h"
 #include "viewer/server/viewer_files.h"
@@ -128,6 +129,7 @@ void run(const BuildCommand& command, const CommonOptions& common) {
   BuildSettings settings = resolve(command);
   const auto progress = make_progress(common.quiet);
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, *progress);
+  if (!settings.geodetic.is_raster()) tiler::check_size(dem->heights().shape());
   const bool is_native = !settings.geodetic.is_geodetic() && !settings.geodetic.is_raster();
   if (is_native) raise_to_the_ellipsoid(*dem, settings.geodetic, *progress);
   if (!settings.geodetic.is_geodetic()) {

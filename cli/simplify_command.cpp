@@ -10,6 +10,7 @@
 #include "cli/terminal_progress.h"
 #include "ingest/features.h"
 #include "ingest/scan.h"
+#include "tiler/dem_size.h"
 #include "tiler/files/mesh_file.h"
 #include "tiler/files/whole_file.h"
 #include "tiler/simplify.h"
@@ -49,6 +50,7 @@ void run(const SimplifyCommand& command, const CommonOptions& common) {
   apply(command.dem, open_options);
   const auto progress = make_progress(common.quiet);
   const auto dem = ingest::open_dem(command.dem.dem, open_options, *progress);
+  tiler::check_size(dem->heights().shape());
   ingest::FeatureOptions features{.plan_tolerance_m = options.tolerance_m};
   apply(command.dem, features);
   options.features = ingest::read_features(*dem, features, *progress);

@@ -10,6 +10,7 @@
 #include "hierarchy/collapse/strict_collapse.h"
 #include "hierarchy/mesh/boundary_vertices.h"
 #include "hierarchy/mesh/grid_triangles.h"
+#include "tiler/dem_size.h"
 #include "tiler/simplify_tiles.h"
 #include "tiler/tile/grid_census.h"
 
@@ -24,8 +25,6 @@ using hierarchy::VertexKind;
 
 // what the collapse and the measurement may differ by in rounding: 9 km take 10^-11 m in doubles
 constexpr double kRounding_m = 1e-9;
-// orientation tests of triangles as wide as this are exact
-constexpr std::int64_t kExactCells = 32768;
 
 /// Writes places over the flat grid itself: plan as it is, heights in steps.
 class FlatPlacer final : public hierarchy::Placer {
@@ -42,18 +41,9 @@ class FlatPlacer final : public hierarchy::Placer {
   double steps_per_m_;
 };
 
-void check_size(GridShape shape) {
-  if (shape.columns - 1 <= kMostCellsPerSide && shape.rows - 1 <= kMostCellsPerSide) return;
-  throw InputError(fmt::format(
-      "the DEM has {} x {} samples, and one mesh spans {} at most along a side. Cut the DEM with "
-      "gdal_translate -srcwin, or make tiles with terrane build",
-      shape.columns, shape.rows, kMostCellsPerSide + 1));
-}
-
 /// Can it be simplified at once?
 bool is_small(GridShape shape, const SimplifyOptions& options) {
-  return shape.columns - 1 <= kExactCells && shape.rows - 1 <= kExactCells &&
-         shape.columns * shape.rows <= options.most_samples_at_once;
+  return shape.columns * shape.rows <= options.most_samples_at_once;
 }
 
 SampleField field_of(const HeightGrid& grid) {

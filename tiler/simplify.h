@@ -29,9 +29,6 @@ struct SimplifiedTerrain {
   GridError error;  ///< of mesh, measured anew over every sample
 };
 
-/// Most cells along a side of a DEM: what GridPoint counts to.
-inline constexpr std::int64_t kMostCellsPerSide = 131'071;
-
 /// \throws ConfigError that names the setting, if one is out of range.
 void check(const SimplifyOptions& options);
 
@@ -43,8 +40,8 @@ void check(const SimplifyOptions& options);
 /// The result depends on the heights and options alone.
 ///
 /// \throws ConfigError if an option is out of range, or the tolerance is finer than the heights are
-///         written; InputError if the DEM has no triangle, is too large for one mesh, or cannot be
-///         read.
+///         written; InputError if the DEM has no triangle, is too large (check_size() in
+///         tiler/dem_size.h), or cannot be read.
 SimplifiedTerrain simplify(const HeightSource& heights, const SimplifyOptions& options,
                            Progress& progress);
 

@@ -14,7 +14,7 @@ inline constexpr std::int64_t kSimplifyTileCells = 512;
 ///
 /// Memory: some tiles at a time (about 330 bytes a sample), and the result.
 /// \param tolerance_m  instead of that of \p options.
-/// \pre neither side is longer than kMostCellsPerSide; options are in range.
+/// \pre check_size() of tiler/dem_size.h holds; options are in range.
 /// \throws ConfigError if the tolerance is finer than the heights are written; InputError if the
 /// DEM
 ///         cannot be read.

@@ -55,6 +55,13 @@ class BadInput(unittest.TestCase):
         file.write_text('<VRTDataset rasterXSize="0" rasterYSize="0"/>')
         self.refuse([file], INPUT, "empty.vrt")
 
+    def test_more_samples_along_a_side_than_tiles_can_count(self):
+        file = self.folder / "wide.vrt"
+        file.write_text('''<VRTDataset rasterXSize="131073" rasterYSize="2">
+            <GeoTransform>0, 1, 0, 0, 0, -1</GeoTransform>
+            <VRTRasterBand dataType="Float32" band="1"/></VRTDataset>''')
+        self.refuse([file], INPUT, "131073 x 2", "131072", "gdal_translate")
+
     def test_one_column(self):
         file = self.folder / "line.asc"
         write_grid(file, 1, 9)

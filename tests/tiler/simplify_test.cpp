@@ -169,7 +169,7 @@ TEST(SimplifyInTiles, RefusesADemWithoutTriangles) {
 TEST(Simplify, RefusesADemThatIsTooLongAndSaysWhatToUse) {
   const FunctionDem dem({200000, 2}, [](auto, auto) { return 0; });
   EXPECT_THROW(simplified(dem, 1), InputError);
-  EXPECT_THAT(message_of([&] { simplified(dem, 1); }), HasSubstr("terrane build"));
+  EXPECT_THAT(message_of([&] { simplified(dem, 1); }), HasSubstr("gdal_translate"));
 }
 
 TEST(Simplify, RefusesAToleranceThatTheStepsOfHeightsCannotKeep) {

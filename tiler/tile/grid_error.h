@@ -24,7 +24,7 @@ struct GridError {
 ///
 /// \param mesh  plan is counted from sample (0, 0) of the DEM.
 /// \param grid  NaN is no sample.
-/// \pre every triangle spans at most 32,768 cells a side.
+/// \pre the mesh spans at most kMostCells (tiler/dem_size.h) a side.
 GridError measure_over_grid(const hierarchy::TerrainMesh& mesh, const HeightGrid& grid);
 
 /// The same over a whole DEM, of which a strip of rows is in memory at a time.
