@@ -13,6 +13,7 @@
 #include "core/errors.h"
 #include "ingest/scan.h"
 #include "tiler/dem_size.h"
+#include "tiler/files/folder_lock.h"
 #include "tiler/files/output_folder.h"
 #include "tiler/files/whole_file.h"
 #include "viewer/server/viewer_files.h"
@@ -139,6 +140,7 @@ void run(const BuildCommand& command, const CommonOptions& common) {
   settings.build.texture = texture.get();
   const HeightStatistics statistics = ingest::scan_heights(*dem, *progress);
   tiler::OutputFolder(command.out).claim(command.force);
+  const tiler::FolderLock lock(command.out);
   if (settings.geodetic.is_geodetic()) {
     const tiler::BuildResult result =
         build_geodetic(*dem, statistics, settings.geodetic, settings.features.water, settings.build,

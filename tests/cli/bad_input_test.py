@@ -2,6 +2,7 @@
 """Bad input: one clear line that names the file and what to do, and nothing half-written."""
 
 import contextlib
+import fcntl
 import os
 import pathlib
 import subprocess
@@ -116,6 +117,13 @@ class BadInput(unittest.TestCase):
         (self.folder / "thesis").mkdir()
         (self.folder / "thesis" / "chapter1.tex").write_text("It was a dark and stormy night")
         self.refuse([self.good], OUTPUT, "thesis", "--force", out="thesis")
+
+    def test_output_that_another_run_is_writing_to(self):
+        (self.folder / "out").mkdir()
+        descriptor = os.open(self.folder / "out", os.O_RDONLY)
+        self.addCleanup(os.close, descriptor)
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        self.refuse([self.good], OUTPUT, "another run")
 
     def test_output_that_is_a_file(self):
         (self.folder / "file").write_text("x")
