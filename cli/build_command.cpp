@@ -139,6 +139,9 @@ void run(const BuildCommand& command, const CommonOptions& common) {
   const auto texture = open_texture(settings.drape, *dem);
   settings.build.texture = texture.get();
   const HeightStatistics statistics = ingest::scan_heights(*dem, *progress);
+  if (is_native) {
+    tiler::check_place(dem->heights().shape(), dem->place(), statistics, settings.build);
+  }
   tiler::OutputFolder(command.out).claim(command.force);
   const tiler::FolderLock lock(command.out);
   if (settings.geodetic.is_geodetic()) {

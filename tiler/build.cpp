@@ -18,6 +18,7 @@
 #include "tiler/gltf/tile_skirt.h"
 #include "tiler/gltf/write_glb.h"
 #include "tiler/seams/build_seam.h"
+#include "tiler/tile/tile_frame.h"
 #include "tiler/tileset/write_tileset.h"
 
 namespace terrane::tiler {
@@ -336,6 +337,16 @@ void check(const BuildOptions& options) {
   if (options.jobs < 0) {
     throw ConfigError(fmt::format("--jobs {}: must be 0 (all cores) or more", options.jobs));
   }
+}
+
+void check_place(GridShape shape, const Georeference& place, const HeightStatistics& statistics,
+                 const BuildOptions& options) {
+  const Pyramid pyramid(shape, options.tile_cells, options.levels_per_octave);
+  const WorldFrame world(place, shape);
+  const Lattice lattice(pyramid, world, statistics, options.tolerance_m,
+                        steps_per_tolerance(options));
+  const TileId root{pyramid.root_level(), 0, 0};
+  const TileFrame frame(world, lattice, pyramid.window(root), root.level);
 }
 
 BuildResult build(const HeightSource& heights, const Georeference& place,

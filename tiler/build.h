@@ -36,6 +36,13 @@ struct BuildOptions {
 /// \throws ConfigError that names the setting, if one is out of range.
 void check(const BuildOptions& options);
 
+/// Finds out at once what would else show after hours, at the coarsest level.
+/// \throws InputError if the DEM has no place on the Earth, or its projection bends so much over
+/// the
+///         whole DEM that tiles cannot follow it.
+void check_place(GridShape shape, const Georeference& place, const HeightStatistics& statistics,
+                 const BuildOptions& options);
+
 struct BuildResult {
   bool was_up_to_date = false;  ///< nothing was left to do
   int levels = 0;

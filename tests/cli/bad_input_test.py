@@ -63,6 +63,13 @@ class BadInput(unittest.TestCase):
             <VRTRasterBand dataType="Float32" band="1"/></VRTDataset>''')
         self.refuse([file], INPUT, "131073 x 2", "131072", "gdal_translate")
 
+    def test_a_projection_that_tiles_cannot_follow_is_found_before_anything_is_built(self):
+        file = self.folder / "pacific.vrt"
+        file.write_text('''<VRTDataset rasterXSize="400" rasterYSize="400">
+            <SRS>EPSG:3832</SRS><GeoTransform>-4e6, 2e4, 0, 4e6, 0, -2e4</GeoTransform>
+            <VRTRasterBand dataType="Float32" band="1"/></VRTDataset>''')
+        self.refuse([file], INPUT, "0 to 399", "bends", "gdalwarp")
+
     def test_one_column(self):
         file = self.folder / "line.asc"
         write_grid(file, 1, 9)
