@@ -108,6 +108,7 @@ class Build {
     for (int level = 0; level < pyramid_.level_count(); ++level) {
       data_set_.tolerance_m.push_back(tolerance_of_level_m(options, level));
     }
+    source_.steepest = steepest(lattice_, data_set_.tolerance_m);
     if (options.features.lines.empty()) return;
     features_.emplace(options.features, pyramid_, lattice_, data_set_.tolerance_m);
     source_.features = &*features_;

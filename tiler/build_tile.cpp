@@ -143,6 +143,7 @@ class TileBuild {
     if (source_.features != nullptr) options.lines = source_.features->tolerance(tile_.level);
     options.smallest_altitude_cells =
         source_.lattice.smallest_altitude_steps() * step_m() / frame_.spacing_m();
+    options.steepest_m = source_.steepest * frame_.spacing_m();
 
     // what a reduced reference learns is soon little each time
     constexpr int kMostTries = 12, kTriesToLearn = 6;

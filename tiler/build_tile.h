@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "core/height_source.h"
@@ -25,6 +26,8 @@ struct TileSource {
   /// Lines and water that tiles keep, if any.
   const TileFeatures* features = nullptr;
   const LooseSamples* loose = nullptr;  ///< between the samples of heights; null: none
+  /// Most metres that a triangle may rise over one metre: see steepest() in tile/lattice.h.
+  double steepest = std::numeric_limits<double>::infinity();
 };
 
 /// What lines do in a leaf tile and on its border.

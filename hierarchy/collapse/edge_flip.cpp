@@ -28,7 +28,7 @@ bool is_upright(GridPoint a, GridPoint b, GridPoint c, double smallest_altitude_
 
 bool EdgeFlip::is_better(HalfedgeId h, const HalfedgeMesh& mesh,
                          std::span<const TerrainVertex> vertices, const CoveredSamples& samples,
-                         double tolerance_m, double smallest_altitude_cells) {
+                         double tolerance_m, double smallest_altitude_cells, double steepest_m) {
   const HalfedgeId o = mesh.opposite(h);
   const TriangleId t0 = HalfedgeMesh::triangle(h), t1 = HalfedgeMesh::triangle(o);
   if (mesh.is_ghost(t0) || mesh.is_ghost(t1)) return false;
@@ -47,6 +47,9 @@ bool EdgeFlip::is_better(HalfedgeId h, const HalfedgeMesh& mesh,
   }
 
   const TrianglePlane before[] = {{a, b, c}, {b, a, d}}, after[] = {{a, d, c}, {b, c, d}};
+  for (const TrianglePlane& plane : after) {
+    if (plane.squared_rise_m2() > steepest_m * steepest_m) return false;
+  }
   const double dx = static_cast<double>(c.plan.x) - d.plan.x;
   const double dy = static_cast<double>(c.plan.y) - d.plan.y;
   double old_square = 0, new_square = 0;

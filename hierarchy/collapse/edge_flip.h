@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -21,11 +22,13 @@ namespace terrane::hierarchy {
 class EdgeFlip {
  public:
   /// True if the flipped pair is upright in plan, no thinner than \p smallest_altitude_cells,
-  /// within \p tolerance_m of every sample under it, and its sum of squared errors is smaller.
+  /// rises no more than \p steepest_m over a cell, is within \p tolerance_m of every sample under
+  /// it, and its sum of squared errors is smaller.
   ///
   /// An edge with both ends on a line, a seam or the outline stays, and none is made.
   bool is_better(HalfedgeId h, const HalfedgeMesh& mesh, std::span<const TerrainVertex> vertices,
-                 const CoveredSamples& samples, double tolerance_m, double smallest_altitude_cells);
+                 const CoveredSamples& samples, double tolerance_m, double smallest_altitude_cells,
+                 double steepest_m = std::numeric_limits<double>::infinity());
 
   /// The samples under the pair that was last better.
   std::span<const CoveredSample> samples() const { return samples_; }

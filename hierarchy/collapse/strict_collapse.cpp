@@ -8,6 +8,7 @@
 #include "hierarchy/collapse/edge_flip.h"
 #include "hierarchy/collapse/morph_guard.h"
 #include "hierarchy/collapse/star_fit.h"
+#include "hierarchy/collapse/triangle_plane.h"
 
 namespace terrane::hierarchy {
 namespace {
@@ -134,7 +135,7 @@ class StrictCollapse {
       const HalfedgeId h = HalfedgeMesh::halfedge(t, k);
       const TriangleId across = HalfedgeMesh::triangle(mesh_.opposite(h));
       if (across < t || !flip_.is_better(h, mesh_, vertices_, samples_, tolerance_m_,
-                                         options_.smallest_altitude_cells)) {
+                                         options_.smallest_altitude_cells, options_.steepest_m)) {
         continue;
       }
       mesh_.flip(h);
@@ -342,7 +343,7 @@ class StrictCollapse {
 
   std::optional<Place> onto_line(const Place& place) {
     candidates_.assign(1, {place.plan, place.height_m});
-    if (!fit(candidates_[0]) || !is_star_shaped(place.plan)) return std::nullopt;
+    if (!fit(candidates_[0]) || !is_sound(place)) return std::nullopt;
     refusal_ = Collapsibility::kOverTolerance;
     if (!judge_.holds(star_, place, tolerance_m_) || !blends(place)) return std::nullopt;
     return place;
@@ -379,7 +380,7 @@ class StrictCollapse {
     const double height_m = std::isnan(water_m_) ? wished_height_m(candidate)
                                                  : placer_.over_datum_m(candidate.plan, water_m_);
     const Place place = placer_.place(candidate.plan, height_m);
-    if (!is_star_shaped(place.plan)) return std::nullopt;
+    if (!is_sound(place)) return std::nullopt;
     if (!judge_.holds(star_, place, tolerance_m_) || !blends(place)) return std::nullopt;
     return place;
   }
@@ -391,7 +392,9 @@ class StrictCollapse {
     return star_.origin().height_m + std::clamp(best, lowest + margin, highest - margin);
   }
 
-  bool is_star_shaped(GridPoint centre) const {
+  /// Is no triangle of the star turned over, too thin or too steep?
+  bool is_sound(const Place& place) const {
+    const GridPoint centre = place.plan;
     for (std::size_t k = 0; k < star_.sector_count(); ++k) {
       const GridPoint from = star_.corner(k).plan, to = star_.corner(k + 1).plan;
       const std::int64_t area = orient2d(centre, from, to);
@@ -402,6 +405,8 @@ class StrictCollapse {
       const double altitude = options_.smallest_altitude_cells * kUnitsPerCell;
       const auto twice_area = static_cast<double>(area);
       if (twice_area * twice_area < longest2 * altitude * altitude) return false;
+      const TrianglePlane plane(place, star_.corner(k), star_.corner(k + 1));
+      if (plane.squared_rise_m2() > options_.steepest_m * options_.steepest_m) return false;
     }
     return true;
   }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct StrictOptions {
   double tolerance_m = 1;
   /// Smallest altitude in plan of a new triangle, in cells: rounding must not turn it over.
   double smallest_altitude_cells = 0;
+  /// Most that a new triangle may rise, in metres per cell: what later levels' rounding moves it by
+  /// must not become too much in height.
+  double steepest_m = std::numeric_limits<double>::infinity();
   /// 0 to 3. Above 1, vertices are moved to where the squared error is least, without a finer level
   /// edges are flipped, too, and collapses tried again, in more and more rounds. 0: without a finer
   /// level, triangles alone collapse; with one, few places are tried for a new vertex.

@@ -25,6 +25,9 @@ class TrianglePlane {
            sample.height_m;
   }
 
+  /// The square of what the plane rises over one cell along its steepest line.
+  double squared_rise_m2() const { return per_column_ * per_column_ + per_row_ * per_row_; }
+
  private:
   double column_, row_, height_m_, per_column_, per_row_;
 };

@@ -117,4 +117,17 @@ LatticePoint Lattice::refine(const LatticePoint& point, int level) const {
   return {point.i * r[0], point.j * r[1], point.k * r[2]};
 }
 
+double steepest(const Lattice& lattice, const std::vector<double>& tolerance_m) {
+  // half a step on both axes; a tenth is for rounding in height
+  constexpr double kMoved_steps = 0.71, kShare = 0.9;
+  double result = INFINITY;
+  for (int level = 0; level + 1 < static_cast<int>(tolerance_m.size()); ++level) {
+    const double step_m = lattice.step_m(level + 1).x();
+    if (step_m == lattice.step_m(level).x()) continue;
+    const double slack_m = tolerance_m[level + 1] - tolerance_m[level];
+    result = std::min(result, kShare * slack_m / (kMoved_steps * step_m));
+  }
+  return result;
+}
+
 }  // namespace terrane::tiler

@@ -68,4 +68,10 @@ class Lattice {
   std::vector<Eigen::Vector3d> steps_m_;
 };
 
+/// Most metres that a triangle may rise over one metre of plan, so that where a level is rounded to
+/// longer steps than the finer one, it comes not nearer to its tolerance than that is wider.
+/// Infinite if no level is.
+/// \param tolerance_m  of each level.
+double steepest(const Lattice& lattice, const std::vector<double>& tolerance_m);
+
 }  // namespace terrane::tiler

@@ -98,6 +98,37 @@ TEST(StrictCollapse, LockedVerticesStayWhereTheyAre) {
   }
 }
 
+double steepest_m(const TerrainMesh& mesh) {
+  double steepest_m = 0;
+  for (const Corners& corners : mesh.triangles) {
+    double x[3], y[3], z[3];
+    for (int k = 0; k < 3; ++k) {
+      const Place& place = mesh.vertices[corners[k]].place;
+      x[k] = column_of(place.plan) - column_of(mesh.vertices[corners[0]].place.plan);
+      y[k] = row_of(place.plan) - row_of(mesh.vertices[corners[0]].place.plan);
+      z[k] = place.height_m - mesh.vertices[corners[0]].place.height_m;
+    }
+    const double area = x[1] * y[2] - x[2] * y[1];
+    steepest_m = std::max(steepest_m, std::hypot((z[1] * y[2] - z[2] * y[1]) / area,
+                                                 (x[1] * z[2] - x[2] * z[1]) / area));
+  }
+  return steepest_m;
+}
+
+TEST(StrictCollapse, MakesNoTriangleSteeperThanAskedFor) {
+  std::mt19937 random(1);
+  const HeightGrid grid =
+      grid_of(40, 40, [&](auto, auto) { return static_cast<double>(random() % 100); });
+  const TerrainMesh full = terrain_of(grid);
+  const double wanted_m = steepest_m(full);
+  ASSERT_GT(steepest_m(collapse(grid, 25).mesh), wanted_m) << "or this shows nothing";
+  const StrictResult result =
+      collapse_strictly(full, field_of(grid), ExactPlacer(), {},
+                        {.tolerance_m = 25, .steepest_m = wanted_m, .effort = 3});
+  EXPECT_LE(steepest_m(result.mesh), wanted_m);
+  EXPECT_LT(result.mesh.triangles.size(), full.triangles.size() / 2);
+}
+
 /// The finer mesh on its way to the coarser one.
 TerrainMesh blend(const TerrainMesh& finer, const StrictResult& coarser, double t) {
   TerrainMesh mesh = finer;

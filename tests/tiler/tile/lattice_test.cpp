@@ -29,6 +29,18 @@ TEST(Lattice, RefineKeepsThePlace) {
   EXPECT_EQ(kLattice.world(kLattice.refine(point, 1), 1), kLattice.world(point, 2));
 }
 
+TEST(Lattice, TheSteepestTriangleStaysWithinTheToleranceWhereALevelIsRoundedAnew) {
+  const double rise = steepest(kLattice, {1, 2, 4});
+  const double level_1_m = rise * std::sqrt(0.5) * 1, level_2_m = rise * std::sqrt(0.5) * 4;
+  EXPECT_LE(1 + level_1_m, 2);
+  EXPECT_LE(2 + level_2_m, 4);
+  EXPECT_GT(2 + level_2_m, 3.5);  // and uses what there is
+}
+
+TEST(Lattice, AnyTriangleMayBeSteepWhereNoLevelIsRoundedAnew) {
+  EXPECT_EQ(steepest(Lattice({{1, 1, 1}, {1, 1, 2}}), {1, 2}), INFINITY);
+}
+
 /// A DEM of 1000 x 700 samples, 30 m apart, 4,400 m of relief.
 class ChosenSteps : public ::testing::Test {
  protected:
