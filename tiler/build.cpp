@@ -1,8 +1,6 @@
 #include "tiler/build.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for_each.h>
-#include <tbb/task_arena.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -17,7 +15,7 @@
 #include "tiler/gltf/cut_texture.h"
 #include "tiler/gltf/tile_skirt.h"
 #include "tiler/gltf/write_glb.h"
-#include "tiler/seams/build_seam.h"
+#include "tiler/level_rounds.h"
 #include "tiler/tile/tile_frame.h"
 #include "tiler/tileset/write_tileset.h"
 
@@ -83,6 +81,11 @@ std::optional<PlanMap> plan_of(const Georeference& place, GridShape shape) {
   return fit_plan_map(place, shape);
 }
 
+int jobs_of(const BuildOptions& options) {
+  return options.jobs > 0 ? options.jobs
+                          : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
 class Build {
  public:
   Build(const HeightSource& heights, const Georeference& place, const HeightStatistics& statistics,
@@ -93,8 +96,6 @@ class Build {
         source_{heights, world_, pyramid_, lattice_, options.effort},
         is_mirrored_(is_mirrored(world_, heights.shape())),
         folder_(out),
-        progress_(progress),
-        jobs_(options.jobs > 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency())),
         texture_(options.texture),
         data_set_{.shape = heights.shape(),
                   .heights = statistics,
@@ -104,7 +105,8 @@ class Build {
                   .levels_per_octave = options.levels_per_octave,
                   .tolerance_m = {},
                   .format = options.format,
-                  .key = build_key(options, statistics)} {
+                  .key = build_key(options, statistics)},
+        rounds_(source_, folder_, data_set_.tolerance_m, jobs_of(options), progress) {
     for (int level = 0; level < pyramid_.level_count(); ++level) {
       data_set_.tolerance_m.push_back(tolerance_of_level_m(options, level));
     }
@@ -120,97 +122,34 @@ class Build {
       return {.was_up_to_date = true};
     }
     folder_.begin(data_set_.key);
-    for (int level = 0; level < pyramid_.level_count(); ++level) build_level(level);
+    for (int level = 0; level < pyramid_.level_count(); ++level) {
+      rounds_.build(level, fmt::format("level {} of {}", level, pyramid_.root_level()),
+                    [this](const TileId& tile) { build_tile(tile); });
+    }
     return finish();
   }
 
  private:
-  void build_level(int level) {
-    const std::vector<TileId> tiles = pyramid_.tiles(level);
-    const std::vector<SeamId> seams = tiler::seams(pyramid_, level);
-    progress_.begin(fmt::format("level {} of {}", level, pyramid_.root_level()),
-                    static_cast<std::int64_t>(tiles.size() + seams.size()));
-    // all seams before any tile: a tile needs its own, and takes away what its seams are made from
-    for_each(seams, [&](const SeamId& seam) {
-      if (!is_done(seam)) build_seam(seam);
-    });
-    for_each(tiles, [&](const TileId& tile) {
-      if (!is_done(tile)) build_tile(tile);
-    });
-    folder_.forget_seams(level);
-  }
-
-  template <class Item, class Work>
-  void for_each(const std::vector<Item>& items, Work work) {
-    tbb::task_arena arena(jobs_);
-    arena.execute([&] {
-      tbb::parallel_for_each(items, [&](const Item& item) {
-        work(item);
-        progress_.advance(1);
-      });
-    });
-  }
-
-  bool is_done(const SeamId& seam) const {
-    return std::filesystem::exists(folder_.finished_seam(seam)) ||
-           (is_done(seam.first) && is_done(seam.second()));
-  }
-
-  void build_seam(const SeamId& seam) const {
-    const int level = seam.first.level;
-    const double tolerance_m = data_set_.tolerance_m[level];
-    SeamChain chain;
-    if (level == 0) {
-      chain = build_leaf_seam(source_, seam, tolerance_m);
-    } else {
-      std::vector<TileMesh> beside;
-      for (const TileId& tile : tiles_beside(pyramid_, seam)) {
-        beside.push_back(read_finished_tile(folder_.finished_tile(tile)).mesh);
-      }
-      chain = build_parent_seam(source_, seam, beside, tolerance_m);
-    }
-    write_finished_seam(chain, folder_.finished_seam(seam));
-  }
-
-  std::vector<SeamChain> finished_seams(const TileId& tile) const {
-    std::vector<SeamChain> chains;
-    for (const SeamId& seam : seams_of(pyramid_, tile)) {
-      chains.push_back(read_finished_seam(folder_.finished_seam(seam)));
-    }
-    return chains;
-  }
-
-  bool is_done(const TileId& tile) const {
-    if (tile.level > pyramid_.root_level()) return false;
-    return std::filesystem::exists(folder_.finished_tile(tile)) || is_done(pyramid_.parent(tile));
-  }
-
   void build_tile(const TileId& tile) const {
     const double tolerance_m = data_set_.tolerance_m[tile.level];
+    const std::vector<SeamChain> seams = rounds_.seams_of_tile(tile);
     FinishedTile finished;
     if (tile.level == 0) {
-      finished.mesh = build_leaf(source_, tile, finished_seams(tile), tolerance_m).mesh;
-      write_finished_tile(finished, folder_.finished_tile(tile));
+      finished.mesh = build_leaf(source_, tile, seams, tolerance_m).mesh;
+      rounds_.keep(tile, finished, {});
       return;
     }
-    const std::vector<TileId> ids = pyramid_.children(tile);
-    std::vector<TileMesh> meshes;
-    std::vector<std::vector<TileRecord>> records;
-    for (const TileId& child : ids) {
-      FinishedTile read = read_finished_tile(folder_.finished_tile(child));
-      meshes.push_back(std::move(read.mesh));
-      records.push_back(std::move(read.descendants));
-    }
-    BuiltTile built = build_parent(source_, tile, meshes, finished_seams(tile), tolerance_m);
-    hierarchy::for_each_within_task(ids.size(), [&](std::size_t c) {
-      write_tile(ids[c], meshes[c], built.child_targets[c], records[c]);
+    FinishedChildren children = rounds_.children_of(tile);
+    BuiltTile built = build_parent(source_, tile, children.meshes, seams, tolerance_m);
+    hierarchy::for_each_within_task(children.tiles.size(), [&](std::size_t c) {
+      write_tile(children.tiles[c], children.meshes[c], built.child_targets[c],
+                 children.descendants[c]);
     });
-    for (const auto& of_child : records) {
+    for (const auto& of_child : children.descendants) {
       finished.descendants.insert(finished.descendants.end(), of_child.begin(), of_child.end());
     }
     finished.mesh = std::move(built.mesh);
-    write_finished_tile(finished, folder_.finished_tile(tile));
-    for (const TileId& child : ids) std::filesystem::remove(folder_.finished_tile(child));
+    rounds_.keep(tile, finished, children.tiles);
   }
 
   /// Writes a tile's glb and puts its record before those of its descendants.
@@ -304,10 +243,9 @@ class Build {
   TileSource source_;
   bool is_mirrored_;
   OutputFolder folder_;
-  Progress& progress_;
-  int jobs_;
   const TextureSource* texture_;
   DataSet data_set_;
+  LevelRounds rounds_;
   std::optional<TileFeatures> features_;
 };
 

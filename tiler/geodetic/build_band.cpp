@@ -1,15 +1,13 @@
 #include "tiler/geodetic/build_band.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for_each.h>
-#include <tbb/task_arena.h>
 
 #include <Eigen/Geometry>
 
 #include "tiler/build_tile.h"
 #include "tiler/files/output_folder.h"
 #include "tiler/geodetic/grid_lattice.h"
-#include "tiler/seams/build_seam.h"
+#include "tiler/level_rounds.h"
 
 namespace terrane::tiler {
 namespace {
@@ -20,7 +18,6 @@ class BandBuild {
             Progress& progress)
       : options_(options),
         write_(write),
-        progress_(progress),
         band_(heights, options.tiles),
         // where the last tile meets the first there is no seam: both keep every post there
         pyramid_(band_.shape(), kGeodeticTileCells, /*levels_per_octave=*/1,
@@ -35,13 +32,17 @@ class BandBuild {
                 hierarchy::kDefaultEffort,
                 nullptr,
                 options.holds_dem_samples ? &band_ : nullptr},
-        folder_(options.work) {
+        folder_(options.work),
+        rounds_(source_, folder_, options.tolerance_m, options.jobs, progress) {
     const std::array<double, 16> transform = world_.to_ecef();
     to_ecef_ = Eigen::Map<const Eigen::Matrix4d>(transform.data()).topLeftCorner<3, 3>();
   }
 
   std::vector<TileRecord> run() {
-    for (int level = 0; level < level_count(); ++level) build_level(level);
+    for (int level = 0; level < level_count(); ++level) {
+      rounds_.build(level, fmt::format("zoom {}", options_.tiles.zoom - level),
+                    [this](const TileId& tile) { build_tile(tile); });
+    }
     std::vector<TileRecord> records;
     for (const TileId& tile : pyramid_.tiles(level_count() - 1)) {
       const FinishedTile finished = read_finished_tile(folder_.finished_tile(tile));
@@ -53,85 +54,19 @@ class BandBuild {
  private:
   int level_count() const { return static_cast<int>(options_.tolerance_m.size()); }
 
-  void build_level(int level) {
-    const std::vector<TileId> tiles = pyramid_.tiles(level);
-    const std::vector<SeamId> seams = tiler::seams(pyramid_, level);
-    progress_.begin(fmt::format("zoom {}", options_.tiles.zoom - level),
-                    static_cast<std::int64_t>(tiles.size() + seams.size()));
-    // as in build.cpp: all seams before any tile
-    for_each(seams, [&](const SeamId& seam) {
-      if (!is_done(seam)) build_seam(seam);
-    });
-    for_each(tiles, [&](const TileId& tile) {
-      if (!is_done(tile)) build_tile(tile);
-    });
-    folder_.forget_seams(level);
-  }
-
-  template <class Item, class Work>
-  void for_each(const std::vector<Item>& items, Work work) {
-    tbb::task_arena arena(options_.jobs);
-    arena.execute([&] {
-      tbb::parallel_for_each(items, [&](const Item& item) {
-        work(item);
-        progress_.advance(1);
-      });
-    });
-  }
-
-  bool is_done(const SeamId& seam) const {
-    return std::filesystem::exists(folder_.finished_seam(seam)) ||
-           (is_done(seam.first) && is_done(seam.second()));
-  }
-
-  bool is_done(const TileId& tile) const {
-    if (tile.level >= level_count()) return false;
-    return std::filesystem::exists(folder_.finished_tile(tile)) || is_done(pyramid_.parent(tile));
-  }
-
-  void build_seam(const SeamId& seam) const {
-    const double tolerance_m = options_.tolerance_m[seam.first.level];
-    SeamChain chain;
-    if (seam.first.level == 0) {
-      chain = build_leaf_seam(source_, seam, tolerance_m);
-    } else {
-      std::vector<TileMesh> beside;
-      for (const TileId& tile : tiles_beside(pyramid_, seam)) {
-        beside.push_back(read_finished_tile(folder_.finished_tile(tile)).mesh);
-      }
-      chain = build_parent_seam(source_, seam, beside, tolerance_m);
-    }
-    write_finished_seam(chain, folder_.finished_seam(seam));
-  }
-
-  std::vector<SeamChain> finished_seams(const TileId& tile) const {
-    std::vector<SeamChain> chains;
-    for (const SeamId& seam : seams_of(pyramid_, tile)) {
-      chains.push_back(read_finished_seam(folder_.finished_seam(seam)));
-    }
-    return chains;
-  }
-
   void build_tile(const TileId& tile) const {
     const double tolerance_m = options_.tolerance_m[tile.level];
-    const std::vector<SeamChain> seams = finished_seams(tile);
-    const std::vector<TileId> children = pyramid_.children(tile);
+    const std::vector<SeamChain> seams = rounds_.seams_of_tile(tile);
+    const FinishedChildren children = rounds_.children_of(tile);
     FinishedTile finished;
-    if (tile.level == 0) {
-      finished.mesh = build_leaf(source_, tile, seams, tolerance_m).mesh;
-    } else {
-      std::vector<TileMesh> meshes;
-      for (const TileId& child : children) {
-        FinishedTile below = read_finished_tile(folder_.finished_tile(child));
-        meshes.push_back(std::move(below.mesh));
-        finished.descendants.insert(finished.descendants.end(), below.descendants.begin(),
-                                    below.descendants.end());
-      }
-      finished.mesh = build_parent(source_, tile, meshes, seams, tolerance_m).mesh;
+    for (const auto& of_child : children.descendants) {
+      finished.descendants.insert(finished.descendants.end(), of_child.begin(), of_child.end());
     }
+    finished.mesh = tile.level == 0
+                        ? build_leaf(source_, tile, seams, tolerance_m).mesh
+                        : build_parent(source_, tile, children.meshes, seams, tolerance_m).mesh;
     if (is_wanted(tile)) finished.descendants.push_back(write(tile, finished.mesh));
-    write_finished_tile(finished, folder_.finished_tile(tile));
-    for (const TileId& child : children) std::filesystem::remove(folder_.finished_tile(child));
+    rounds_.keep(tile, finished, children.tiles);
   }
 
   bool is_wanted(const TileId& tile) const {
@@ -169,13 +104,13 @@ class BandBuild {
 
   const BandOptions& options_;
   const WriteTerrain& write_;
-  Progress& progress_;
   TileBand band_;
   Pyramid pyramid_;
   WorldFrame world_;
   GridLattice lattice_;
   TileSource source_;
   OutputFolder folder_;
+  LevelRounds rounds_;
   Eigen::Matrix3d to_ecef_;  // rotation alone
 };
 
