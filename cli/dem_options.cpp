@@ -38,8 +38,10 @@ void add_feature_options(CLI::App& command, DemOptions& options) {
   command.add_option("--water", options.water,
                      "Polygons whose inside is one flat height and whose shore the mesh keeps; "
                      "geodetic: those of the water mask");
-  command.add_option("--water-height", options.water_height_m,
-                     "Height of the water in metres [the median along its shore]");
+  command.add_option(
+      "--water-height", options.water_height_m,
+      "Height of the water in metres, over what the DEM's heights are over [the median "
+      "along its shore]");
 }
 
 void apply(const DemOptions& options, ingest::FeatureOptions& settings) {

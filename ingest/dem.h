@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -83,6 +84,9 @@ class Dem {
   /// \pre the DEM has a CRS.
   void raise(std::unique_ptr<Geoid> geoid);
 
+  /// What heights were raised by, on average over some places; 0 if they were not.
+  double raised_m(std::span<const GridPosition> places) const;
+
   const Georeference& place() const { return *place_; }
 
   /// File name without its folders, or "a.tif and 1 more".
@@ -99,6 +103,7 @@ class Dem {
   std::vector<SuspectHeight> suspects_;
   std::unique_ptr<HeightSource> heights_;
   std::unique_ptr<Georeference> place_;
+  const Geoid* raised_by_ = nullptr;  // the heights own it
 };
 
 /// Opens one raster, several that make up one grid, or "synthetic:..." (see synthetic.h).

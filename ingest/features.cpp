@@ -80,9 +80,15 @@ std::vector<WaterBody> bodies_of(const VectorLayer& layer, const Laying& laying)
   return bodies;
 }
 
-void set_height(WaterBody& body, const std::optional<double>& asked_m, const HeightSource& heights,
+void set_height(WaterBody& body, const std::optional<double>& asked_m, const Dem& dem,
                 const std::string& layer) {
-  const std::optional<double> height_m = asked_m ? asked_m : shore_height_m(body, heights);
+  std::optional<double> height_m;
+  if (asked_m) {
+    // as users know it: over what the DEM's own heights are over
+    height_m = *asked_m + dem.raised_m(body.shores.front());
+  } else {
+    height_m = shore_height_m(body, dem.heights());
+  }
   if (!height_m) {
     throw InputError(
         fmt::format("{}: the DEM has no data along a shore, so the water's height is "
@@ -175,7 +181,7 @@ GridFeatures read_features(Dem& dem, const FeatureOptions& options, Progress& pr
     VectorLayer layer = read_vector_layer(source, WantedGeometry::kPolygons);
     place_on_grid(layer, dem.place(), shape);
     for (WaterBody& body : bodies_of(layer, laying)) {
-      set_height(body, options.water_height_m, dem.heights(), source);
+      set_height(body, options.water_height_m, dem, source);
       progress.note(fmt::format("{}: water at {:.3f} m, {} shores", source, body.height_m,
                                 body.shores.size()));
       bodies.push_back(std::move(body));

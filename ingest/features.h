@@ -14,10 +14,11 @@ namespace terrane::ingest {
 /// What a user wants kept. Each source is a file or anything else that GDAL opens as vectors, with
 /// ":LAYER" after it where there are several.
 struct FeatureOptions {
-  std::vector<std::string> lines;        ///< of lines; of polygons, their rims
-  std::vector<std::string> water;        ///< of polygons
-  std::optional<double> water_height_m;  ///< of every water; else that of its shore samples
-  double plan_tolerance_m = 1;           ///< lines may be simplified by a part of this
+  std::vector<std::string> lines;  ///< of lines; of polygons, their rims
+  std::vector<std::string> water;  ///< of polygons
+  /// Of every water, over what the DEM's own heights are over; else that of its shore samples.
+  std::optional<double> water_height_m;
+  double plan_tolerance_m = 1;  ///< lines may be simplified by a part of this
   /// Of a mesh whose places are rounded to a lattice: lines stay away from samples and from each
   /// other by about an eighth of the tolerance, so that no triangle between them turns over.
   bool is_rounded = false;

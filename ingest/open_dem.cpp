@@ -84,7 +84,15 @@ void Dem::level_water(const WaterRows& water) {
 }
 
 void Dem::raise(std::unique_ptr<Geoid> geoid) {
+  raised_by_ = geoid.get();
   heights_ = raise_heights(std::move(heights_), *place_, std::move(geoid));
+}
+
+double Dem::raised_m(std::span<const GridPosition> places) const {
+  if (raised_by_ == nullptr || places.empty()) return 0;
+  double sum_m = 0;
+  for (const LonLat& at : place_->to_lon_lat(places)) sum_m += raised_by_->undulation_m(at);
+  return sum_m / static_cast<double>(places.size());
 }
 
 std::unique_ptr<Dem> open_dem(const std::vector<std::string>& sources, const OpenOptions& options,

@@ -73,6 +73,24 @@ class OwnGrid(unittest.TestCase):
         self.assertEqual((dem["min_height_m"], dem["max_height_m"]), (HEIGHT, HEIGHT))
         self.assertNotIn("does not say", self.build("none", "--geoid", "none")[0])
 
+    def test_water_stands_at_its_height_over_the_geoid(self):
+        pond = self.folder / "pond.geojson"
+        ring = [[7.2, 46.7], [7.35, 46.7], [7.35, 46.8], [7.2, 46.8], [7.2, 46.7]]
+        pond.write_text(json.dumps({"type": "Feature", "properties": {}, "geometry": {
+            "type": "Polygon", "coordinates": [ring]}}))
+        said, dem = self.build("out", "--geoid", "egm96", "--water", pond, "--water-height", "400")
+        raised = subprocess.run(
+            ["gdaltransform", "-s_srs", "EPSG:4326+5773", "-t_srs", "EPSG:4979"], input="\n".join(
+                f"{x} {y} 400" for x, y in ring[:4]), check=True, capture_output=True,
+            text=True).stdout.splitlines()
+        corners = [float(line.split()[2]) for line in raised]
+        # flat, so over the ellipsoid at one height: between those that its corners ask for
+        self.assertGreaterEqual(dem["min_height_m"], min(corners) - 0.02)
+        self.assertLessEqual(dem["min_height_m"], max(corners) + 0.02)
+        self.assertIn(f"water at {dem['min_height_m']:.3f} m", said)
+        status, printed, said = terrane("--quiet", "verify", self.folder / "out")
+        self.assertEqual(status, 0, printed + said)
+
     def test_refuses_a_geoid_without_a_place(self):
         status, _, said = terrane("--quiet", "build", self.dem, "-o", self.folder / "out",
                                   "--geoid", "egm96")
