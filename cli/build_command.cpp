@@ -39,6 +39,20 @@ void override_with(const std::optional<From>& given, To& setting) {
   if (given) setting = *given;
 }
 
+/// How tiles of the DEM's own grid are written is of no effect on others.
+void refuse_tile_options(const TileOptions& options, const std::string& format) {
+  if (format == "3dtiles-terrain" && options.compression == "meshopt") {
+    throw ConfigError(
+        "--compression meshopt: CesiumJS takes places of terrain as 16 bits of the tile then, "
+        "which "
+        "hold no tolerance. Leave it away");
+  }
+  const char* const useless = first_of_native_tiles(options);
+  if (useless == nullptr) return;
+  throw ConfigError(
+      fmt::format("{}: has no meaning for --format {}. Leave it away", useless, format));
+}
+
 /// Options that would be of no effect.
 void refuse_native_options(const BuildCommand& command, const BuildSettings& settings) {
   const char* const useless = command.tile_cells                 ? "--tile-cells"
@@ -97,7 +111,9 @@ BuildSettings resolve(const BuildCommand& command) {
   apply(command.raster, settings.raster);
   check(settings.raster);
   refuse_other_formats(command, settings);
+  const bool is_native = !settings.geodetic.is_geodetic() && !settings.geodetic.is_raster();
   if (settings.geodetic.is_geodetic()) refuse_native_options(command, settings);
+  if (!is_native) refuse_tile_options(command.tiles, settings.geodetic.format);
   if (settings.dem.empty()) {
     throw ConfigError("no DEM given. Name one, or set ingest.dem in the file of --config");
   }

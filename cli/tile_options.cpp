@@ -98,6 +98,20 @@ void apply(const TileOptions& options, ingest::DrapeOptions& drape) {
   if (options.texture_format) drape.format = picture_format_of(*options.texture_format);
 }
 
+const char* first_of_native_tiles(const TileOptions& options) {
+  return options.is_implicit         ? "--implicit"
+         : options.tiles_per_tileset ? "--tileset-tiles"
+         : options.compression       ? "--compression"
+         : options.positions         ? "--positions"
+         : options.material          ? "--material"
+         : options.skirts            ? "--skirts"
+         : options.colour            ? "--colour"
+         : !options.textures.empty() ? "--texture"
+         : options.texture_format    ? "--texture-format"
+         : options.texture_px        ? "--texture-px"
+                                     : nullptr;
+}
+
 ingest::PictureFormat picture_format_of(const std::string& word) {
   ingest::PictureFormat format = ingest::PictureFormat::kJpeg;
   choose("--texture-format", word, kPictureFormats, format);

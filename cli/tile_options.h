@@ -29,6 +29,10 @@ void apply(const TileOptions& options, tiler::TileFormat& format);
 
 void apply(const TileOptions& options, ingest::DrapeOptions& drape);
 
+/// The first option of those that say how tiles of the DEM's own grid are written, if one is given:
+/// all but the attribution.
+const char* first_of_native_tiles(const TileOptions& options);
+
 /// \throws ConfigError if it is neither jpeg nor webp.
 ingest::PictureFormat picture_format_of(const std::string& word);
 std::string word_of(ingest::PictureFormat format);

@@ -14,6 +14,7 @@
 #include "ingest/scan.h"
 #include "tiler/files/whole_file.h"
 #include "tiler/verify/verify.h"
+#include "tiler/verify/verify_pictures.h"
 #include "tiler/verify/verify_terrain.h"
 #include "tiler/verify/water_samples.h"
 
@@ -46,7 +47,7 @@ void check_same_dem(const std::filesystem::path& out, const ingest::Dem& dem, Pr
                   out.string(), dem.name()));
 }
 
-/// A report of either scheme.
+/// A report of any kind of output.
 struct Verdict {
   bool holds = false;
   std::string text, json;
@@ -90,25 +91,18 @@ Verdict verify_folder(const std::filesystem::path& out, const VerifyCommand& com
   check_finished(out);
   BuildSettings settings;
   read_settings(out / "build.toml", settings);
-  if (settings.geodetic.is_raster()) {
-    throw InputError(
-        fmt::format("{}: holds pictures of heights, which verify does not judge. See terrane info",
-                    out.string()));
-  }
   if (!command.dem.empty()) settings.dem = command.dem;
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, progress);
   NoProgress quietly;  // what was assumed was said by the build
   if (!settings.geodetic.is_geodetic()) {
-    raise_to_the_ellipsoid(*dem, settings.geodetic, quietly);
+    if (!settings.geodetic.is_raster()) raise_to_the_ellipsoid(*dem, settings.geodetic, quietly);
     read_features(settings, *dem, progress);
   }
   check_same_dem(out, *dem, progress);
   const verify::VerifyOptions options{.jobs = command.jobs};
-  if (settings.geodetic.is_geodetic() && settings.geodetic.format != "quantized-mesh") {
-    throw InputError(
-        fmt::format("{}: holds {}, which verify does not read. The same meshes are written with "
-                    "--format quantized-mesh, which it judges",
-                    out.string(), settings.geodetic.format));
+  if (settings.geodetic.is_raster()) {
+    return verdict_of(verify::verify_pictures(out, dem->heights(), dem->place(),
+                                              settings.geodetic.fill_m, progress));
   }
   if (!settings.geodetic.is_geodetic()) {
     auto report = verify::verify(out, dem->heights(), dem->place(), options, progress);

@@ -47,8 +47,10 @@ def build_earth(folder):
     if not dem.exists():
         subprocess.run(["gdal_translate", "-q", "-a_srs", "EPSG:4326", f"NETCDF:{ETOPO5}:ROSE", dem],
                        check=True)
-    subprocess.run([TERRANE, "--quiet", "build", dem, "-o", folder / "earth", "--scheme", "geodetic",
-                    "--geoid", "egm96", "--tolerance", "400", "--max-zoom", "3"], check=True)
+    for name, options in (("earth", "--tolerance 400 --max-zoom 3"),
+                          ("earth-3dtiles", "--tolerance 800 --max-zoom 2 --format 3dtiles-terrain")):
+        subprocess.run([TERRANE, "--quiet", "build", dem, "-o", folder / name, "--scheme", "geodetic",
+                        "--geoid", "egm96", *options.split()], check=True)
 
 
 def main():

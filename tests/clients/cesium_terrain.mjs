@@ -13,7 +13,10 @@ const server = await servePages(cesiumMounts(folder));
 
 await withBrowser(async (context) => {
   for (const name of await terrainSets(folder)) await look(context, name, await quantizedMesh(name));
-  for (const name of await terrainSets(folder, 'tileset.json')) await look(context, name, await tiles3d(name));
+  for (const name of await terrainSets(folder, 'tileset.json')) {
+    // the Earth is drawn once, from quantized-mesh: pages take their time
+    if (existsSync(join(folder, `${name}_points.json`))) await look(context, name, await tiles3d(name));
+  }
 });
 check(server.missing.length === 0, `nothing asked for that is not there ${server.missing.slice(0, 3)}`);
 server.close();
@@ -29,10 +32,8 @@ async function quantizedMesh(name) {
 }
 
 async function tiles3d(name) {
-  const points = await json(`${name}_points.json`);
-  const [longitudes, latitudes] = [0, 1].map((k) => points.map((point) => point[k]));
-  const bounds = [Math.min(...longitudes), Math.min(...latitudes), Math.max(...longitudes), Math.max(...latitudes)];
-  return {bounds, maxzoom: (await json(name, 'terrane.json')).zooms.at(-1).zoom, is3dTiles: true};
+  const {bounds, zooms} = await json(name, 'terrane.json');
+  return {bounds, maxzoom: zooms.at(-1).zoom, is3dTiles: true};
 }
 
 async function look(context, name, set) {

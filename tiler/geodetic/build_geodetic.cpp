@@ -153,9 +153,11 @@ class GeodeticBuild {
   }
 
   std::int64_t write_glb(const TerrainTile& tile) const {
-    const std::string glb = encode_terrain_glb(tile, options_.attribution);
+    const double step_m =
+        place_step_m(tile.tile.zoom, heights_.max_height_m() - heights_.min_height_m());
+    const std::string glb = encode_terrain_glb(tile, step_m, options_.attribution);
     write_whole_file(out_ / glb_path_of(tile.tile), glb);
-    write_facts(facts_of(tile), facts_of_tile(tile.tile));
+    write_facts(facts_of(tile, glb_places_of(tile, step_m)), facts_of_tile(tile.tile));
     return static_cast<std::int64_t>(glb.size());
   }
 
@@ -243,7 +245,7 @@ class GeodeticBuild {
 }  // namespace
 
 std::string geodetic_key(const HeightStatistics& statistics, const GeodeticOptions& options) {
-  return hash_hex(fmt::format("geodetic 2 {} {} {} {} {} {} {}", TERRANE_GENERATOR,
+  return hash_hex(fmt::format("geodetic 3 {} {} {} {} {} {} {}", TERRANE_GENERATOR,
                               static_cast<int>(options.format), options.tolerance_m,
                               statistics.fingerprint, options.source, options.attribution,
                               options.water_fingerprint));

@@ -37,7 +37,7 @@ class Bytes {
 };
 
 void add_header(Bytes& bytes, const TerrainTile& tile) {
-  const TerrainFacts facts = facts_of(tile);
+  const TerrainFacts facts = facts_of(tile, ecef_of(tile));
   const HeightRange range = height_range(tile);
   bytes.add(facts.sphere.centre);
   bytes.add(range.min_m);

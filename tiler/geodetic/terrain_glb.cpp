@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <vector>
 
 #include "tiler/gltf/glb_buffers.h"
@@ -35,15 +37,32 @@ GlbValues values_of(const std::vector<Eigen::Vector3f>& vectors, bool has_bounds
   return values;
 }
 
+Eigen::Vector3d rounded(const Eigen::Vector3d& at, double step_m) {
+  // halves go away from 0 on both sides, so turning an axis changes nothing
+  return (at / step_m).unaryExpr([](double steps) { return std::round(steps); }) * step_m;
+}
+
 }  // namespace
 
-std::string encode_terrain_glb(const TerrainTile& given, const std::string& attribution) {
+double place_step_m(int zoom, double height_range_m) {
+  constexpr double kEquator_m = 6378137;
+  const double side_m = std::ldexp(std::numbers::pi * kEquator_m, -zoom);
+  return std::exp2(std::ceil(std::log2(side_m + height_range_m)) - 24);
+}
+
+std::vector<Eigen::Vector3d> glb_places_of(const TerrainTile& tile, double step_m) {
+  std::vector<Eigen::Vector3d> places = ecef_of(tile);
+  for (Eigen::Vector3d& at : places) at = rounded(at, step_m);
+  return places;
+}
+
+std::string encode_terrain_glb(const TerrainTile& given, double step_m,
+                               const std::string& attribution) {
   const TerrainTile tile = in_order_of_use(given);
-  const Eigen::Vector3d middle = facts_of(tile).sphere.centre;
+  const std::vector<Eigen::Vector3d> places = glb_places_of(tile, step_m);
+  const Eigen::Vector3d middle = rounded(sphere_around(places).centre, step_m);
   std::vector<Eigen::Vector3f> positions, normals;
-  for (const Eigen::Vector3d& at : ecef_of(tile)) {
-    positions.push_back(y_up((at - middle).cast<float>()));
-  }
+  for (const Eigen::Vector3d& at : places) positions.push_back(y_up((at - middle).cast<float>()));
   for (const Eigen::Vector3f& normal : tile.normals) normals.push_back(y_up(normal.normalized()));
   std::vector<std::uint32_t> indices;
   for (const auto& corners : tile.triangles) {

@@ -82,8 +82,7 @@ TerrainBorders borders_of(const TerrainTile& tile) {
               tile, [](const Vertex& a) { return a.v == 0; }, westward)};
 }
 
-TerrainFacts facts_of(const TerrainTile& tile) {
-  const std::vector<Eigen::Vector3d> ecef = ecef_of(tile);
+TerrainFacts facts_of(const TerrainTile& tile, std::span<const Eigen::Vector3d> ecef) {
   const auto [low, high] =
       std::ranges::minmax(tile.vertices, {}, [](const auto& vertex) { return vertex.height; });
   const TmsBounds bounds = bounds_of(tile.tile);

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,7 +48,8 @@ struct TerrainFacts {
   Sphere sphere;
   Eigen::Vector3d horizon = Eigen::Vector3d::Zero();  ///< see horizon_occlusion_point()
 };
-TerrainFacts facts_of(const TerrainTile& tile);
+/// \param ecef  the places of its vertices as clients get them.
+TerrainFacts facts_of(const TerrainTile& tile, std::span<const Eigen::Vector3d> ecef);
 
 /// \throws OutputError if the file cannot be written.
 void write_facts(const TerrainFacts& facts, const std::filesystem::path& file);

@@ -192,26 +192,30 @@ std::vector<Glb::Vector> Glb::vectors(const json& primitive, const char* attribu
 }
 
 std::vector<std::uint32_t> Glb::indices(const json& primitive) const {
-  const json& accessor = accessor_of(primitive.at("indices"));
+  const json* coded = draco_extension(primitive);
+  if (coded == nullptr) return whole_numbers(primitive.at("indices"));
+  auto indices = draco_of(*coded).indices();
+  if (accessor_of(primitive.at("indices")).at("count") != indices.size()) {
+    fail("an accessor is not as long as its Draco mesh");
+  }
+  return indices;
+}
+
+std::vector<std::uint32_t> Glb::whole_numbers(const json& accessor_index) const {
+  const json& accessor = accessor_of(accessor_index);
   const int type = accessor.at("componentType").get<int>();
   if ((type != kUnsignedShort && type != kUnsignedInt) || accessor.at("type") != "SCALAR") {
     fail("indices are not UNSIGNED SHORT or INT");
-  }
-  if (const json* coded = draco_extension(primitive)) {
-    auto indices = draco_of(*coded).indices();
-    if (accessor.at("count") != indices.size())
-      fail("an accessor is not as long as its Draco mesh");
-    return indices;
   }
   const std::size_t element_bytes = type == kUnsignedShort ? 2 : 4;
   const View view = view_of(accessor, element_bytes);
   // the type and the stride must agree, or every second index would be read as zero
   if (view.stride != element_bytes) fail("indices are packed in another width than their type");
-  std::vector<std::uint32_t> indices(accessor.at("count").get<std::size_t>(), 0);
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    std::memcpy(&indices[i], view.bytes.data() + i * view.stride, element_bytes);
+  std::vector<std::uint32_t> numbers(accessor.at("count").get<std::size_t>(), 0);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    std::memcpy(&numbers[i], view.bytes.data() + i * view.stride, element_bytes);
   }
-  return indices;
+  return numbers;
 }
 
 }  // namespace terrane::verify

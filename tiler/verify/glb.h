@@ -31,6 +31,9 @@ class Glb {
   /// The corners of a primitive, UNSIGNED SHORT or UNSIGNED INT.
   std::vector<std::uint32_t> indices(const nlohmann::json& primitive) const;
 
+  /// Whole numbers of an accessor, UNSIGNED SHORT or UNSIGNED INT, of no Draco mesh.
+  std::vector<std::uint32_t> whole_numbers(const nlohmann::json& accessor_index) const;
+
   /// An error about this file.
   [[noreturn]] void fail(const std::string& what) const;
 

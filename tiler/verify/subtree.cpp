@@ -84,22 +84,86 @@ std::int64_t even_bits(std::size_t code) {
   return bits;
 }
 
-void take_metadata(const File& file, const std::string& box_property, Subtree& subtree) {
+void take_tiles(const File& file, int levels, Subtree& subtree) {
   const json& document = file.document();
-  const json& table =
-      document.at("propertyTables").at(document.at("tileMetadata").get<std::size_t>());
-  if (table.at("count") != subtree.tiles.size()) file.fail("has not one row for each tile");
-  const auto view = [&](const std::string& property) {
-    return table.at("properties").at(property).at("values").get<std::size_t>();
-  };
+  std::size_t first = 0;
+  for (int depth = 0; depth < levels; ++depth) {
+    const std::size_t count = std::size_t{1} << (2 * depth);
+    for (std::size_t code = 0; code < count; ++code) {
+      if (!file.is_available(document.at("tileAvailability"), first + code)) continue;
+      const bool has_content =
+          file.is_available(document.at("contentAvailability").at(0), first + code);
+      subtree.tiles.push_back({.depth = depth,
+                               .x = even_bits(code),
+                               .y = even_bits(code >> 1),
+                               .has_content = has_content});
+    }
+    first += count;
+  }
+  for (std::size_t code = 0; code < std::size_t{1} << (2 * levels); ++code) {
+    if (!file.is_available(document.at("childSubtreeAvailability"), code)) continue;
+    subtree.children.push_back({even_bits(code), even_bits(code >> 1)});
+  }
+}
+
+/// The property table with a row for each tile.
+class Metadata {
+ public:
+  Metadata(const File& file, std::size_t tiles)
+      : file_(file),
+        table_(file.document()
+                   .at("propertyTables")
+                   .at(file.document().at("tileMetadata").get<std::size_t>())) {
+    if (table_.at("count") != tiles) file.fail("has not one row for each tile");
+  }
+
+  template <class T>
+  T number(const std::string& property, std::size_t index) const {
+    const json& values = table_.at("properties").at(property).at("values");
+    return file_.number<T>(values.get<std::size_t>(), index);
+  }
+
+ private:
+  const File& file_;
+  const json& table_;
+};
+
+void take_metadata(const File& file, const std::string& box_property, Subtree& subtree) {
+  const Metadata metadata(file, subtree.tiles.size());
   for (std::size_t row = 0; row < subtree.tiles.size(); ++row) {
     SubtreeTile& tile = subtree.tiles[row];
     for (std::size_t n = 0; n < 12; ++n) {
-      tile.box[n] = file.number<double>(view(box_property), 12 * row + n);
+      tile.box[n] = metadata.number<double>(box_property, 12 * row + n);
     }
-    tile.triangles = file.number<std::uint32_t>(view("triangles"), row);
-    tile.bytes = file.number<std::uint32_t>(view("bytes"), row);
-    tile.max_error_m = file.number<double>(view("max_error_m"), row);
+    tile.triangles = metadata.number<std::uint32_t>("triangles", row);
+    tile.bytes = metadata.number<std::uint32_t>("bytes", row);
+    tile.max_error_m = metadata.number<double>("max_error_m", row);
+  }
+}
+
+void take_facts(const File& file, const TerrainProperties& names, TerrainSubtree& subtree) {
+  const Metadata metadata(file, subtree.listing.tiles.size());
+  for (std::size_t row = 0; row < subtree.listing.tiles.size(); ++row) {
+    TerrainFacts& facts = subtree.facts.emplace_back();
+    facts.min_height_m = metadata.number<double>(names.min_height, row);
+    facts.max_height_m = metadata.number<double>(names.max_height, row);
+    facts.sphere_radius_m = metadata.number<double>(names.bounding_sphere, 4 * row + 3);
+    for (std::size_t n = 0; n < 3; ++n) {
+      facts.sphere_centre[n] = metadata.number<double>(names.bounding_sphere, 4 * row + n);
+      facts.horizon[n] = metadata.number<double>(names.horizon_occlusion_point, 3 * row + n);
+    }
+  }
+}
+
+/// Calls take(file) for a file that is open; what is wrong in its JSON becomes an InputError.
+template <class Take>
+void read(const std::filesystem::path& path, int levels, const Take& take) {
+  const File file(path);
+  if (levels < 1 || levels > kMostLevels) file.fail(fmt::format("{} levels", levels));
+  try {
+    take(file);
+  } catch (const json::exception& error) {
+    file.fail(error.what());
   }
 }
 
@@ -107,33 +171,21 @@ void take_metadata(const File& file, const std::string& box_property, Subtree& s
 
 Subtree read_subtree(const std::filesystem::path& path, int levels,
                      const std::string& box_property) {
-  const File file(path);
-  if (levels < 1 || levels > kMostLevels) file.fail(fmt::format("{} levels", levels));
   Subtree subtree;
-  try {
-    const json& document = file.document();
-    std::size_t first = 0;
-    for (int depth = 0; depth < levels; ++depth) {
-      const std::size_t count = std::size_t{1} << (2 * depth);
-      for (std::size_t code = 0; code < count; ++code) {
-        if (!file.is_available(document.at("tileAvailability"), first + code)) continue;
-        const bool has_content =
-            file.is_available(document.at("contentAvailability").at(0), first + code);
-        subtree.tiles.push_back({.depth = depth,
-                                 .x = even_bits(code),
-                                 .y = even_bits(code >> 1),
-                                 .has_content = has_content});
-      }
-      first += count;
-    }
-    for (std::size_t code = 0; code < std::size_t{1} << (2 * levels); ++code) {
-      if (!file.is_available(document.at("childSubtreeAvailability"), code)) continue;
-      subtree.children.push_back({even_bits(code), even_bits(code >> 1)});
-    }
+  read(path, levels, [&](const File& file) {
+    take_tiles(file, levels, subtree);
     take_metadata(file, box_property, subtree);
-  } catch (const json::exception& error) {
-    file.fail(error.what());
-  }
+  });
+  return subtree;
+}
+
+TerrainSubtree read_terrain_subtree(const std::filesystem::path& path, int levels,
+                                    const TerrainProperties& names) {
+  TerrainSubtree subtree;
+  read(path, levels, [&](const File& file) {
+    take_tiles(file, levels, subtree.listing);
+    take_facts(file, names, subtree);
+  });
   return subtree;
 }
 

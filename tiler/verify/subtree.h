@@ -33,4 +33,25 @@ struct Subtree {
 Subtree read_subtree(const std::filesystem::path& file, int levels,
                      const std::string& box_property);
 
+/// What the metadata of 3D Tiles terrain say of a tile.
+struct TerrainFacts {
+  double min_height_m = 0, max_height_m = 0;
+  std::array<double, 3> sphere_centre{};
+  double sphere_radius_m = 0;
+  std::array<double, 3> horizon{};
+};
+
+/// The names that a schema has for what has a meaning: TILE_MINIMUM_HEIGHT and so on.
+struct TerrainProperties {
+  std::string min_height, max_height, bounding_sphere, horizon_occlusion_point;
+};
+
+/// The same of a quadtree of terrain.
+struct TerrainSubtree {
+  Subtree listing;                  ///< without boxes, numbers of triangles and the like
+  std::vector<TerrainFacts> facts;  ///< of each of its tiles
+};
+TerrainSubtree read_terrain_subtree(const std::filesystem::path& file, int levels,
+                                    const TerrainProperties& names);
+
 }  // namespace terrane::verify

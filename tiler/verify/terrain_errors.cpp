@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "core/errors.h"
+#include "tiler/verify/terrain_examination.h"
 #include "tiler/verify/terrain_surface.h"
 
 namespace terrane::verify {
@@ -110,7 +111,7 @@ class Measurement {
   std::unique_ptr<TerrainSurface> load(const TerrainKey& key) const {
     if (!layer_.has(key)) return nullptr;
     try {
-      const TerrainFile tile = read_terrain_file(layer_.file_of(key));
+      const TerrainFile tile = read_tile(layer_, key);
       for (const auto& corners : tile.triangles) {
         for (const std::uint32_t v : corners) {
           if (v >= tile.u.size()) return nullptr;
@@ -137,10 +138,8 @@ class Measurement {
         const double error_m = std::abs(*height_m - sample.height_m);
         errors.square_sum_m2 += error_m * error_m;
         const auto& stated = layer_.zooms[static_cast<std::size_t>(zoom)];
-        // what rounding to floats does to a height of kilometres
-        constexpr double kRounding_m = 1e-3;
         errors.over_tolerance +=
-            stated.is_held_to_dem && error_m > stated.tolerance_m + kRounding_m;
+            stated.is_held_to_dem && error_m > stated.tolerance_m + layer_.rounding_m(zoom);
         if (error_m <= errors.max_m) continue;
         errors.max_m = error_m;
         errors.worst = sample.place;

@@ -4,28 +4,29 @@
 
 #include <GeographicLib/Geocentric.hpp>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "tiler/verify/json_file.h"
+#include "tiler/verify/terrain_claims.h"
+#include "tiler/verify/terrain_glb.h"
+#include "tiler/verify/terrain_glb_examination.h"
 
 namespace terrane::verify {
 namespace {
 
 constexpr std::int32_t kLast = 32767;
 
-const std::vector<std::int32_t>& across(const TerrainFile& tile, TerrainFile::Side side) {
+const std::vector<double>& across(const TerrainFile& tile, TerrainFile::Side side) {
   return side == TerrainFile::kWest || side == TerrainFile::kEast ? tile.u : tile.v;
 }
-const std::vector<std::int32_t>& along(const TerrainFile& tile, TerrainFile::Side side) {
+const std::vector<double>& along(const TerrainFile& tile, TerrainFile::Side side) {
   return side == TerrainFile::kWest || side == TerrainFile::kEast ? tile.v : tile.u;
 }
 std::int32_t place_of(TerrainFile::Side side) {
   return side == TerrainFile::kWest || side == TerrainFile::kSouth ? 0 : kLast;
 }
-constexpr TerrainFile::Side kSides[] = {TerrainFile::kWest, TerrainFile::kSouth, TerrainFile::kEast,
-                                        TerrainFile::kNorth};
 
 class Examination {
  public:
@@ -33,14 +34,10 @@ class Examination {
       : tile_(tile), key_(key), layer_(layer) {}
 
   std::vector<FaultFound> run() {
-    if (!check_indices()) return std::move(found_);
+    if (!check_numbers()) return std::move(found_);
     check_triangles();
     check_border_lists();
     check_heights();
-    ecef_ = ecef_of(tile_, key_);
-    check_sphere();
-    check_horizon();
-    check_normals();
     check_water();
     check_metadata();
     return std::move(found_);
@@ -54,48 +51,28 @@ class Examination {
   std::size_t vertices() const { return tile_.u.size(); }
 
   /// Nothing else can be judged if this fails.
-  bool check_indices() {
-    if (!tile_.has_sound_indices) {
-      note(TerrainFault::kIndices, 1, "an index is beyond the high-water mark");
-    }
-    for (const auto* values : {&tile_.u, &tile_.v, &tile_.height}) {
-      const auto outside = std::ranges::count_if(
-          *values, [](std::int32_t value) { return value < 0 || value > kLast; });
-      if (outside > 0) {
-        note(TerrainFault::kIndices, outside,
-             fmt::format("{} coordinates are not from 0 to 32767", outside));
-      }
-    }
-    std::vector<bool> is_used(vertices(), false);
-    for (const auto& corners : tile_.triangles) {
-      for (const std::uint32_t v : corners) {
-        if (v >= vertices()) {
-          note(TerrainFault::kIndices, 1, fmt::format("there is no vertex {}", v));
-          return false;
-        }
-        is_used[v] = true;
-      }
-    }
-    for (const auto& border : tile_.border) {
-      if (std::ranges::all_of(border, [&](std::uint32_t v) { return v < vertices(); })) continue;
-      note(TerrainFault::kIndices, 1, "a border list names a vertex that is not there");
-      return false;
-    }
-    const auto unused = std::ranges::count(is_used, false);
-    if (unused > 0) {
-      note(TerrainFault::kIndices, unused, fmt::format("no triangle uses {} vertices", unused));
-    }
+  bool check_numbers() {
+    const auto check = [&](const auto& values) {
+      const auto outside =
+          std::ranges::count_if(values, [](auto value) { return value < 0 || value > kLast; });
+      if (outside == 0) return;
+      note(TerrainFault::kIndices, outside,
+           fmt::format("{} coordinates are not from 0 to 32767", outside));
+    };
+    check(tile_.u);
+    check(tile_.v);
+    check(tile_.height_steps);
     return found_.empty();
   }
 
   std::int64_t area(const std::array<std::uint32_t, 3>& t) const {
-    const auto x = [&](int k) { return std::int64_t{tile_.u[t[k]]}; };
-    const auto y = [&](int k) { return std::int64_t{tile_.v[t[k]]}; };
+    const auto x = [&](int k) { return static_cast<std::int64_t>(tile_.u[t[k]]); };
+    const auto y = [&](int k) { return static_cast<std::int64_t>(tile_.v[t[k]]); };
     return (x(1) - x(0)) * (y(2) - y(0)) - (x(2) - x(0)) * (y(1) - y(0));
   }
 
   bool are_on_a_side(std::uint32_t a, std::uint32_t b) const {
-    return std::ranges::any_of(kSides, [&](TerrainFile::Side side) {
+    return std::ranges::any_of(kTerrainSides, [&](TerrainFile::Side side) {
       const auto& at = across(tile_, side);
       return at[a] == place_of(side) && at[b] == place_of(side);
     });
@@ -137,7 +114,7 @@ class Examination {
   }
 
   void check_border_lists() {
-    for (const TerrainFile::Side side : kSides) {
+    for (const TerrainFile::Side side : kTerrainSides) {
       std::vector<std::uint32_t> wanted;
       for (std::uint32_t v = 0; v < vertices(); ++v) {
         if (across(tile_, side)[v] == place_of(side)) wanted.push_back(v);
@@ -153,8 +130,8 @@ class Examination {
 
   void check_heights() {
     if (vertices() == 0) return;
-    const auto [low, high] = std::ranges::minmax(tile_.height);
-    const double range_m = double{tile_.max_height_m} - double{tile_.min_height_m};
+    const auto [low, high] = std::ranges::minmax(tile_.height_steps);
+    const double range_m = tile_.max_height_m - tile_.min_height_m;
     if (!(range_m >= 0) || low != 0) {
       note(TerrainFault::kHeights, 1,
            fmt::format("states heights of {} to {} m, and no vertex has the lowest",
@@ -162,78 +139,12 @@ class Examination {
       return;
     }
     // coarser steps than need be: floats high up leave less choice
-    const double farthest_m =
-        std::max(std::abs(double{tile_.min_height_m}), std::abs(double{tile_.max_height_m}));
+    const double farthest_m = std::max(std::abs(tile_.min_height_m), std::abs(tile_.max_height_m));
     const double used_m = range_m * high / kLast;
     if (range_m <= std::max(2.01 * used_m, 0.01 * farthest_m)) return;
     note(TerrainFault::kHeights, 1,
          fmt::format("states a highest of {} m, its vertices reach {:.3f} m", tile_.max_height_m,
                      tile_.min_height_m + used_m));
-  }
-
-  void check_sphere() {
-    const Eigen::Vector3d centre(tile_.sphere_centre.data());
-    const auto outside = std::ranges::count_if(ecef_, [&](const Eigen::Vector3d& at) {
-      return !((at - centre).norm() <= tile_.sphere_radius_m);
-    });
-    if (outside == 0) return;
-    note(TerrainFault::kSpheres, 1,
-         fmt::format("{} vertices are outside its bounding sphere", outside));
-  }
-
-  /// From a distance, a point is over the horizon for cameras in a cap around it: one of the angle
-  /// whose cosine is 1 / distance, wider for all points alike as the camera is nearer. So the cap
-  /// of each vertex must lie in that of the occlusion point.
-  void check_horizon() {
-    const Eigen::Vector3d point(tile_.horizon.data());
-    // where a vertex is seen from half-way round the Earth, no point will do: far out it must be
-    constexpr double kFarOut = 100, kSlack_rad = 1e-7;
-    const double cap = point.norm() > 1 ? std::acos(1 / point.norm()) : 0;
-    double widest = 0;
-    for (const Eigen::Vector3d& at : ecef_) {
-      const Eigen::Vector3d scaled = at.cwiseQuotient(Eigen::Vector3d(
-          GeographicLib::Constants::WGS84_a(), GeographicLib::Constants::WGS84_a(),
-          GeographicLib::Constants::WGS84_a() * (1 - GeographicLib::Constants::WGS84_f())));
-      const double cosine = scaled.normalized().dot(point.normalized());
-      widest = std::max(widest, std::acos(std::clamp(cosine, -1.0, 1.0)) +
-                                    std::acos(1 / std::max(1.0, scaled.norm())));
-    }
-    const bool is_sound =
-        point.norm() >= kFarOut || (point.norm() >= 1 - 1e-9 && widest <= cap + kSlack_rad);
-    if (is_sound) return;
-    note(TerrainFault::kHorizon, 1,
-         fmt::format("its occlusion point, {:.6f} radii out, is hidden while a vertex is seen",
-                     point.norm()));
-  }
-
-  Eigen::Vector3d decoded_normal(std::size_t v) const {
-    const auto part = [&](std::size_t k) {
-      return static_cast<double>(static_cast<unsigned char>((*tile_.normals)[2 * v + k])) / 255 *
-                 2 -
-             1;
-    };
-    double x = part(0), y = part(1);
-    const double z = 1 - std::abs(x) - std::abs(y);
-    if (z < 0) {
-      const double folded_x = (1 - std::abs(y)) * (x < 0 ? -1 : 1);
-      y = (1 - std::abs(x)) * (y < 0 ? -1 : 1);
-      x = folded_x;
-    }
-    return Eigen::Vector3d(x, y, z).normalized();
-  }
-
-  void check_normals() {
-    if (!tile_.normals || tile_.normals->size() != 2 * vertices()) {
-      note(TerrainFault::kNormals, 1, "its normals are not two bytes a vertex");
-      return;
-    }
-    std::int64_t downward = 0;
-    for (std::size_t v = 0; v < vertices(); ++v) {
-      downward += decoded_normal(v).dot(ecef_[v].normalized()) <= 0;
-    }
-    if (downward > 0) {
-      note(TerrainFault::kNormals, downward, fmt::format("{} normals point down", downward));
-    }
   }
 
   void check_water() {
@@ -309,34 +220,53 @@ class Examination {
   const TerrainFile& tile_;
   const TerrainKey& key_;
   const TerrainLayer& layer_;
-  std::vector<Eigen::Vector3d> ecef_;
   std::vector<FaultFound> found_;
 };
 
 }  // namespace
 
 std::vector<Eigen::Vector3d> ecef_of(const TerrainFile& tile, const TerrainKey& key) {
+  if (!tile.glb_ecef_m.empty()) return tile.glb_ecef_m;
   std::vector<Eigen::Vector3d> ecef(tile.u.size());
   for (std::uint32_t v = 0; v < tile.u.size(); ++v) {
-    const auto share = [](std::int32_t at) { return static_cast<double>(at) / kLast; };
     GeographicLib::Geocentric::WGS84().Forward(
-        std::clamp(key.south_deg() + share(tile.v[v]) * key.side_deg(), -90.0, 90.0),
-        key.west_deg() + share(tile.u[v]) * key.side_deg(), tile.height_m(v), ecef[v].x(),
+        std::clamp(key.south_deg() + tile.v[v] / kLast * key.side_deg(), -90.0, 90.0),
+        key.west_deg() + tile.u[v] / kLast * key.side_deg(), tile.height_m[v], ecef[v].x(),
         ecef[v].y(), ecef[v].z());
   }
   return ecef;
 }
 
+TerrainFile read_tile(const TerrainLayer& layer, const TerrainKey& key) {
+  if (layer.kind == TerrainKind::kQuantizedMesh) return read_terrain_file(layer.file_of(key));
+  return read_terrain_glb(layer.file_of(key), key, layer.facts.at(key));
+}
+
 std::vector<FaultFound> examine_terrain(const TerrainFile& tile, const TerrainKey& key,
                                         const TerrainLayer& layer) {
-  return Examination(tile, key, layer).run();
+  std::vector<FaultFound> found = examine_indices(tile);
+  if (!found.empty()) return found;
+  found = layer.kind == TerrainKind::kQuantizedMesh ? Examination(tile, key, layer).run()
+                                                    : examine_terrain_glb(tile, key, layer);
+  const auto claims = examine_claims(tile, ecef_of(tile, key));
+  found.insert(found.end(), claims.begin(), claims.end());
+  return found;
 }
 
 std::vector<BorderVertex> border_of(const TerrainFile& tile, TerrainFile::Side side) {
   std::vector<BorderVertex> border;
-  for (std::uint32_t v = 0; v < tile.u.size(); ++v) {
-    if (across(tile, side)[v] != place_of(side)) continue;
-    border.emplace_back(along(tile, side)[v], std::llround(tile.height_m(v) * 1e6));
+  if (!tile.glb_ecef_m.empty()) {
+    for (const std::uint32_t v : tile.border[side]) {
+      if (v >= tile.glb_ecef_m.size()) continue;
+      const Eigen::Vector3d& at = tile.glb_ecef_m[v];
+      border.push_back({std::bit_cast<std::int64_t>(at.x()), std::bit_cast<std::int64_t>(at.y()),
+                        std::bit_cast<std::int64_t>(at.z())});
+    }
+  } else {
+    for (std::uint32_t v = 0; v < tile.u.size(); ++v) {
+      if (across(tile, side)[v] != place_of(side)) continue;
+      border.push_back({std::llround(along(tile, side)[v]), std::llround(tile.height_m[v] * 1e6)});
+    }
   }
   std::ranges::sort(border);
   return border;

@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -84,8 +85,9 @@ class Reader {
 };
 
 /// Undoes the zigzag, and adds up the differences.
-std::vector<std::int32_t> take_coordinates(Reader& reader, std::size_t count) {
-  std::vector<std::int32_t> values;
+template <class Number>
+std::vector<Number> take_coordinates(Reader& reader, std::size_t count) {
+  std::vector<Number> values;
   std::int32_t at = 0;
   for (const std::uint16_t code : reader.take_list<std::uint16_t>(count)) {
     at += (code >> 1) ^ -(code & 1);
@@ -112,12 +114,33 @@ void take_indices(Reader& reader, TerrainFile& tile) {
   }
 }
 
+/// Octahedral, two bytes each.
+Eigen::Vector3d normal_of(const char* code) {
+  const auto part = [](char c) {
+    return static_cast<double>(static_cast<unsigned char>(c)) / 255 * 2 - 1;
+  };
+  double x = part(code[0]), y = part(code[1]);
+  const double z = 1 - std::abs(x) - std::abs(y);
+  if (z < 0) {
+    const double folded_x = (1 - std::abs(y)) * (x < 0 ? -1 : 1);
+    y = (1 - std::abs(x)) * (y < 0 ? -1 : 1);
+    x = folded_x;
+  }
+  return Eigen::Vector3d(x, y, z).normalized();
+}
+
+std::vector<Eigen::Vector3d> normals_of(const std::string& codes) {
+  std::vector<Eigen::Vector3d> normals;
+  for (std::size_t k = 0; k + 1 < codes.size(); k += 2) normals.push_back(normal_of(&codes[k]));
+  return normals;
+}
+
 void take_extensions(Reader& reader, const std::filesystem::path& file, TerrainFile& tile) {
   enum : std::uint8_t { kNormals = 1, kWater = 2, kMetadata = 4 };
   while (!reader.is_at_end()) {
     const auto id = reader.take<std::uint8_t>();
     std::string content = reader.take_text(reader.take<std::uint32_t>());
-    if (id == kNormals) tile.normals = std::move(content);
+    if (id == kNormals) tile.normals = normals_of(content);
     if (id == kWater) tile.water = std::move(content);
     if (id != kMetadata) continue;
     std::uint32_t length = 0;
@@ -131,26 +154,27 @@ void take_extensions(Reader& reader, const std::filesystem::path& file, TerrainF
 
 }  // namespace
 
-double TerrainFile::height_m(std::uint32_t vertex) const {
-  const double t = height[vertex] / kLast;
-  return (1 - t) * double{min_height_m} + t * double{max_height_m};
-}
-
 TerrainFile read_terrain_file(const std::filesystem::path& file) {
   const std::string packed = read_bytes(file);
   const std::string bytes = unzip(packed, file);
   Reader reader(bytes, file);
-  TerrainFile tile{.bytes = static_cast<std::int64_t>(packed.size())};
-  for (double& c : tile.centre) c = reader.take<double>();
+  TerrainFile tile;
+  tile.bytes = static_cast<std::int64_t>(packed.size());
+  for (int axis = 0; axis < 3; ++axis) reader.take<double>();  // the middle, which nobody needs
   tile.min_height_m = reader.take<float>();
   tile.max_height_m = reader.take<float>();
   for (double& c : tile.sphere_centre) c = reader.take<double>();
   tile.sphere_radius_m = reader.take<double>();
   for (double& c : tile.horizon) c = reader.take<double>();
   const auto count = reader.take<std::uint32_t>();
-  tile.u = take_coordinates(reader, count);
-  tile.v = take_coordinates(reader, count);
-  tile.height = take_coordinates(reader, count);
+  tile.u = take_coordinates<double>(reader, count);
+  tile.v = take_coordinates<double>(reader, count);
+  tile.height_steps = take_coordinates<std::int32_t>(reader, count);
+  for (const std::int32_t step : tile.height_steps) {
+    // as clients interpolate
+    const double t = step / kLast;
+    tile.height_m.push_back((1 - t) * tile.min_height_m + t * tile.max_height_m);
+  }
   constexpr std::uint32_t kMostFor16Bits = 65536;
   if (count <= kMostFor16Bits) {
     take_indices<std::uint16_t>(reader, tile);

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "tiler/verify/subtree.h"
 
 namespace terrane::verify {
 
@@ -30,12 +35,22 @@ struct TerrainRange {
 };
 using ZoomRanges = std::vector<TerrainRange>;
 
-/// What layer.json and terrane.json say of a set of terrain tiles.
+/// How terrain tiles are written.
+enum class TerrainKind {
+  kQuantizedMesh,  ///< with a layer.json
+  k3dTiles         ///< glb tiles, with a tileset.json and subtrees
+};
+
+/// What the listings and terrane.json say of a set of terrain tiles.
 struct TerrainLayer {
   std::filesystem::path folder;
-  std::vector<ZoomRanges> available;  ///< by zoom, from 0
-  std::string format, scheme, projection;
-  std::vector<std::string> extensions;
+  TerrainKind kind = TerrainKind::kQuantizedMesh;
+  std::vector<ZoomRanges> available;               ///< by zoom, from 0
+  std::string format, scheme, projection;          ///< of layer.json
+  std::vector<std::string> extensions;             ///< of layer.json
+  std::array<std::string, 2> content_template;     ///< of tileset.json
+  std::map<TerrainKey, TerrainFacts> facts;        ///< of the subtrees
+  std::vector<std::string> faults_of_the_listing;  ///< a line each
 
   struct Zoom {
     double tolerance_m = 0, max_error_m = 0;
@@ -46,7 +61,15 @@ struct TerrainLayer {
 
   int finest() const { return static_cast<int>(available.size()) - 1; }
   bool has(const TerrainKey& key) const;
-  std::filesystem::path file_of(const TerrainKey& key) const;
+  std::string path_of(const TerrainKey& key) const;
+  std::filesystem::path file_of(const TerrainKey& key) const { return folder / path_of(key); }
+  /// The tile whose file has this path, whether it is listed or not.
+  std::optional<TerrainKey> key_of(const std::string& path) const;
+  /// ".terrain" or ".glb"
+  const char* extension() const;
+
+  /// What heights may be off by rounding alone: floats do not hold them more closely.
+  double rounding_m(int zoom) const;
 };
 
 /// The ranges of one zoom, as layer.json and the metadata of tiles have them.

@@ -11,19 +11,19 @@ namespace terrane::verify {
 enum class TerrainFault {
   kMissing,     ///< listed (or a root), but no such file; or no parent
   kUnexpected,  ///< there, but not listed
-  kUnreadable,  ///< no whole quantized-mesh
+  kUnreadable,  ///< no whole quantized-mesh or glb
   kIndices,     ///< beyond the high-water mark, or a vertex that no triangle uses
   kFolded,      ///< triangles that face down or have no area
   kCover,       ///< tiles whose triangles do not cover them once
   kEdgeLists,   ///< lists of border vertices that are not those on the border
   kBorders,     ///< vertices that two neighbours do not share
-  kHeights,     ///< a minimum that no vertex has, a maximum far above the highest
+  kHeights,     ///< a minimum that no vertex has, a maximum (far) above the highest
   kSpheres,     ///< bounding spheres that lack a vertex
   kHorizon,     ///< occlusion points that are hidden while a vertex is seen
   kNormals,     ///< missing, or not upward
   kWater,       ///< masks of a wrong size or with a wrong value
   kMetadata,    ///< availability of a tile that is not that of layer.json
-  kMisstated,   ///< counts and errors in terrane.json, facts in layer.json
+  kMisstated,   ///< counts and errors in terrane.json, facts in layer.json or tileset.json
 };
 inline constexpr std::size_t kTerrainFaults = 15;
 std::string name_of(TerrainFault fault);

@@ -23,7 +23,7 @@ TerrainSurface::TerrainSurface(const TerrainFile& tile, const TerrainKey& key)
     : key_(key), triangles_(tile.triangles), in_cell_(kCells * kCells) {
   const std::vector<Eigen::Vector3d> ecef = ecef_of(tile, key);
   for (std::size_t v = 0; v < ecef.size(); ++v) {
-    corners_.push_back({static_cast<double>(tile.u[v]), static_cast<double>(tile.v[v]), ecef[v]});
+    corners_.push_back({tile.u[v], tile.v[v], ecef[v]});
   }
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
     const auto [a, b, c] = triangles_[t];

@@ -16,10 +16,11 @@ namespace terrane::verify {
 /// Reads the files and the DEM only and shares no code with the builder. A damaged tile is a fault
 /// in the report and does not end it.
 ///
-/// \param folder      the OUT of `terrane build`, with quantized-mesh tiles.
+/// \param folder      the OUT of `terrane build`, with quantized-mesh tiles or 3D Tiles terrain.
 /// \param heights     the DEM; the caller has compared its fingerprint.
 /// \param undulation  what was added to its heights.
-/// \throws InputError if layer.json or terrane.json is missing or damaged (names it).
+/// \throws InputError if a listing (layer.json, or tileset.json and subtrees) or terrane.json is
+///         missing or damaged (names it).
 TerrainReport verify_terrain(const std::filesystem::path& folder, const HeightSource& heights,
                              const Georeference& place, const Undulation& undulation,
                              const VerifyOptions& options, Progress& progress);

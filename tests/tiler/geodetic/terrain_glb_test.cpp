@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +12,7 @@
 namespace terrane::tiler {
 namespace {
 
+constexpr double kStep_m = 1.0 / 128;
 constexpr auto kEnd = static_cast<std::int32_t>(kTileSteps);
 
 /// Four triangles around a summit, over 5 to 6 degrees east and 44 to 45 north or so.
@@ -47,7 +49,7 @@ struct Glb {
 
 TEST(TerrainGlb, PositionsAndTheNodesMatrixAreEarthCentredOnceYIsTurnedUp) {
   const TerrainTile tile = in_order_of_use(pyramid());
-  const Glb glb(encode_terrain_glb(tile, "somebody"));
+  const Glb glb(encode_terrain_glb(tile, kStep_m, "somebody"));
   EXPECT_EQ(glb.json["asset"]["copyright"], "somebody");
   const auto& primitive = glb.json["meshes"][0]["primitives"][0];
   const auto at = glb.values<float>(primitive["attributes"]["POSITION"], 3);
@@ -57,16 +59,29 @@ TEST(TerrainGlb, PositionsAndTheNodesMatrixAreEarthCentredOnceYIsTurnedUp) {
   for (std::size_t v = 0; v < 5; ++v) {
     const Eigen::Vector3d turned(at[3 * v] + matrix[12], at[3 * v + 1] + matrix[13],
                                  at[3 * v + 2] + matrix[14]);
-    // CesiumJS's Axis.Y_UP_TO_Z_UP: (x, y, z) to (x, -z, y). Floats of up to 128 km are exact to
-    // 2^-8 m
-    const Eigen::Vector3d off = Eigen::Vector3d(turned.x(), -turned.z(), turned.y()) - ecef[v];
-    EXPECT_LE(off.cwiseAbs().maxCoeff(), 1.0 / 256);
+    // CesiumJS's Axis.Y_UP_TO_Z_UP: (x, y, z) to (x, -z, y)
+    const Eigen::Vector3d place(turned.x(), -turned.z(), turned.y());
+    EXPECT_LE((place - ecef[v]).cwiseAbs().maxCoeff(), kStep_m / 2);
+    EXPECT_EQ(std::remainder(place.x(), kStep_m), 0);
+    EXPECT_EQ(std::remainder(place.y(), kStep_m), 0);
+    EXPECT_EQ(std::remainder(place.z(), kStep_m), 0);
+  }
+}
+
+TEST(TerrainGlb, StepsAreTheFinestThatFloatsHoldAllOverATile) {
+  for (const int zoom : {0, 5, 12, 22}) {
+    const double step_m = place_step_m(zoom, 3000);
+    // half the way round the equator, halved with each zoom
+    const double reach_m = 20037508.34 / std::exp2(zoom) + 3000;
+    EXPECT_LE(reach_m / step_m, std::exp2(24));
+    EXPECT_GT(reach_m / step_m, std::exp2(23));
+    EXPECT_EQ(std::exp2(std::round(std::log2(step_m))), step_m);
   }
 }
 
 TEST(TerrainGlb, ListsTheBordersClockwise) {
   const TerrainTile tile = in_order_of_use(pyramid());
-  const Glb glb(encode_terrain_glb(tile, ""));
+  const Glb glb(encode_terrain_glb(tile, kStep_m, ""));
   const auto& edges = glb.json["meshes"][0]["primitives"][0]["extensions"]["CESIUM_tile_edges"];
   const auto height = [&](const char* side, std::size_t k) {
     return tile.vertices[glb.values<std::uint16_t>(edges[side], 1).at(k)].height;
@@ -82,7 +97,7 @@ TEST(TerrainGlb, ListsTheBordersClockwise) {
 }
 
 TEST(TerrainFacts, HaveTheHeightsOfTheVertices) {
-  const TerrainFacts facts = facts_of(pyramid());
+  const TerrainFacts facts = facts_of(pyramid(), ecef_of(pyramid()));
   EXPECT_EQ(facts.min_height_m, 5);
   EXPECT_EQ(facts.max_height_m, 2000);
   for (const Eigen::Vector3d& at : ecef_of(pyramid())) {
