@@ -8,6 +8,8 @@
 #include "cli/build_settings.h"
 #include "cli/commands.h"
 #include "cli/dem_options.h"
+#include "cli/geodetic_build.h"
+#include "cli/raster_build.h"
 #include "cli/terminal_progress.h"
 #include "cli/tile_options.h"
 #include "core/errors.h"
@@ -30,7 +32,7 @@ struct BuildCommand {
   bool force = false;
   std::optional<int> tile_cells, levels_per_octave, effort, jobs;
   std::optional<double> tolerance_m;
-  GeodeticOptionsGiven geodetic;
+  TilingOptionsGiven tiling;
   RasterOptionsGiven raster;
 };
 
@@ -66,17 +68,17 @@ void refuse_native_options(const BuildCommand& command, const BuildSettings& set
     throw ConfigError(
         fmt::format("{}: is for --scheme native alone. Leave it away, or add that", useless));
   }
-  if (!settings.geodetic.has_water_masks() && !settings.features.water.empty()) {
+  if (!settings.tiling.has_water_masks() && !settings.features.water.empty()) {
     throw ConfigError(
         fmt::format("--water: --format {} has no water masks. Leave it away, or use "
                     "--format quantized-mesh",
-                    settings.geodetic.format));
+                    settings.tiling.format));
   }
 }
 
 /// Options of meshes, where pictures are to be written; and the other way round.
 void refuse_other_formats(const BuildCommand& command, const BuildSettings& settings) {
-  const bool is_raster = settings.geodetic.is_raster();
+  const bool is_raster = settings.tiling.is_raster();
   const char* const useless = !is_raster                       ? (command.raster.px      ? "--raster-px"
                                                                   : command.raster.image ? "--raster-image"
                                                                                          : nullptr)
@@ -89,7 +91,7 @@ void refuse_other_formats(const BuildCommand& command, const BuildSettings& sett
                                                                  : nullptr;
   if (useless == nullptr) return;
   throw ConfigError(fmt::format("{}: has no meaning for --format {}. Leave it away", useless,
-                                settings.geodetic.format));
+                                settings.tiling.format));
 }
 
 BuildSettings resolve(const BuildCommand& command) {
@@ -105,15 +107,15 @@ BuildSettings resolve(const BuildCommand& command) {
   override_with(command.jobs, settings.build.jobs);
   apply(command.tiles, settings.build.format);
   apply(command.tiles, settings.drape);
-  apply(command.geodetic, settings.geodetic);
+  apply(command.tiling, settings.tiling);
   tiler::check(settings.build);
-  check(settings.geodetic);
+  check(settings.tiling);
   apply(command.raster, settings.raster);
   check(settings.raster);
   refuse_other_formats(command, settings);
-  const bool is_native = !settings.geodetic.is_geodetic() && !settings.geodetic.is_raster();
-  if (settings.geodetic.is_geodetic()) refuse_native_options(command, settings);
-  if (!is_native) refuse_tile_options(command.tiles, settings.geodetic.format);
+  const bool is_native = !settings.tiling.is_geodetic() && !settings.tiling.is_raster();
+  if (settings.tiling.is_geodetic()) refuse_native_options(command, settings);
+  if (!is_native) refuse_tile_options(command.tiles, settings.tiling.format);
   if (settings.dem.empty()) {
     throw ConfigError("no DEM given. Name one, or set ingest.dem in the file of --config");
   }
@@ -146,10 +148,10 @@ void run(const BuildCommand& command, const CommonOptions& common) {
   BuildSettings settings = resolve(command);
   const auto progress = make_progress(common.quiet);
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, *progress);
-  if (!settings.geodetic.is_raster()) tiler::check_size(dem->heights().shape());
-  const bool is_native = !settings.geodetic.is_geodetic() && !settings.geodetic.is_raster();
-  if (is_native) raise_to_the_ellipsoid(*dem, settings.geodetic, *progress);
-  if (!settings.geodetic.is_geodetic()) {
+  if (!settings.tiling.is_raster()) tiler::check_size(dem->heights().shape());
+  const bool is_native = !settings.tiling.is_geodetic() && !settings.tiling.is_raster();
+  if (is_native) raise_to_the_ellipsoid(*dem, settings.tiling, *progress);
+  if (!settings.tiling.is_geodetic()) {
     settings.build.features = read_features(settings, *dem, *progress);
   }
   const auto texture = open_texture(settings.drape, *dem);
@@ -160,19 +162,18 @@ void run(const BuildCommand& command, const CommonOptions& common) {
   }
   tiler::OutputFolder(command.out).claim(command.force);
   const tiler::FolderLock lock(command.out);
-  if (settings.geodetic.is_geodetic()) {
+  if (settings.tiling.is_geodetic()) {
     const tiler::BuildResult result =
-        build_geodetic(*dem, statistics, settings.geodetic, settings.features.water, settings.build,
+        build_geodetic(*dem, statistics, settings.tiling, settings.features.water, settings.build,
                        command.out, *progress);
     // not before: a run that is killed while it resamples leaves nothing in the folder
     tiler::write_whole_file(command.out / "build.toml", to_toml(settings));
     report(result, command.out);
     return;
   }
-  if (settings.geodetic.is_raster()) {
-    const tiler::BuildResult result =
-        build_raster(*dem, statistics, settings.geodetic, settings.raster, settings.build,
-                     command.out, *progress);
+  if (settings.tiling.is_raster()) {
+    const tiler::BuildResult result = build_raster(
+        *dem, statistics, settings.tiling, settings.raster, settings.build, command.out, *progress);
     tiler::write_whole_file(command.out / "build.toml", to_toml(settings));
     report(result, command.out);
     return;
@@ -202,7 +203,7 @@ void add_build_command(CLI::App& app, const CommonOptions& common) {
   build->add_option("--effort", command->effort,
                     "0 to 3: more time for fewer triangles within the same tolerance [1]");
   add_feature_options(*build, command->dem);
-  add_geodetic_options(*build, command->geodetic);
+  add_tiling_options(*build, command->tiling);
   add_raster_options(*build, command->raster);
   build->add_option("--jobs", command->jobs, "Threads; 0: one per core [0]");
   add_tile_options(*build, command->tiles);

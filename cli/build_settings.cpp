@@ -84,7 +84,7 @@ const std::map<std::string, Reader>& readers() {
          to.ingest.vertical_unit = unit;
        }},
       {"ingest.crs", [](const Setting& s, BuildSettings& to) { to.ingest.crs = s.text(); }},
-      {"ingest.geoid", [](const Setting& s, BuildSettings& to) { to.geodetic.geoid = s.text(); }},
+      {"ingest.geoid", [](const Setting& s, BuildSettings& to) { to.tiling.geoid = s.text(); }},
       {"build.tolerance_m",
        [](const Setting& s, BuildSettings& to) { to.build.tolerance_m = s.real_number(); }},
       {"build.tile_cells",
@@ -93,12 +93,12 @@ const std::map<std::string, Reader>& readers() {
        [](const Setting& s, BuildSettings& to) { to.build.levels_per_octave = s.whole_number(); }},
       {"build.effort",
        [](const Setting& s, BuildSettings& to) { to.build.effort = s.whole_number(); }},
-      {"build.scheme", [](const Setting& s, BuildSettings& to) { to.geodetic.scheme = s.text(); }},
-      {"build.format", [](const Setting& s, BuildSettings& to) { to.geodetic.format = s.text(); }},
+      {"build.scheme", [](const Setting& s, BuildSettings& to) { to.tiling.scheme = s.text(); }},
+      {"build.format", [](const Setting& s, BuildSettings& to) { to.tiling.format = s.text(); }},
       {"geodetic.max_zoom",
-       [](const Setting& s, BuildSettings& to) { to.geodetic.max_zoom = s.whole_number(); }},
+       [](const Setting& s, BuildSettings& to) { to.tiling.max_zoom = s.whole_number(); }},
       {"geodetic.fill_m",
-       [](const Setting& s, BuildSettings& to) { to.geodetic.fill_m = s.real_number(); }},
+       [](const Setting& s, BuildSettings& to) { to.tiling.fill_m = s.real_number(); }},
       {"features.lines",
        [](const Setting& s, BuildSettings& to) { to.features.lines = s.texts(); }},
       {"features.water",
@@ -165,7 +165,7 @@ std::string list_of(const std::vector<std::string>& sources) {
   return text + "]";
 }
 
-std::string geodetic_toml(const GeodeticSettings& settings) {
+std::string tiling_toml(const TilingSettings& settings) {
   std::string text = "\n[geodetic]\n";
   if (settings.max_zoom) text += fmt::format("max_zoom = {}\n", *settings.max_zoom);
   text += fmt::format("fill_m = {}\n", settings.fill_m);
@@ -224,17 +224,17 @@ std::string to_toml(const BuildSettings& settings) {
     text += "vertical_unit = " + quoted(std::string(name_of(*ingest.vertical_unit))) + "\n";
   }
   if (!ingest.crs.empty()) text += "crs = " + quoted(ingest.crs) + "\n";
-  if (!settings.geodetic.geoid.empty()) {
-    text += "geoid = " + quoted(repeatable(settings.geodetic.geoid)) + "\n";
+  if (!settings.tiling.geoid.empty()) {
+    text += "geoid = " + quoted(repeatable(settings.tiling.geoid)) + "\n";
   }
   text += fmt::format(
       "\n[build]\ntolerance_m = {}\ntile_cells = {}\nlevels_per_octave = {}\neffort = {}\n",
       settings.build.tolerance_m, settings.build.tile_cells, settings.build.levels_per_octave,
       settings.build.effort);
-  const bool is_native = !settings.geodetic.is_geodetic() && !settings.geodetic.is_raster();
+  const bool is_native = !settings.tiling.is_geodetic() && !settings.tiling.is_raster();
   if (!is_native) {
-    text += "scheme = " + quoted(settings.geodetic.scheme) +
-            "\nformat = " + quoted(settings.geodetic.format) + "\n";
+    text += "scheme = " + quoted(settings.tiling.scheme) +
+            "\nformat = " + quoted(settings.tiling.format) + "\n";
   }
   text += features_toml(settings.features);
   text += "\n[tiles]\n" + to_toml(settings.build.format);
@@ -245,8 +245,8 @@ std::string to_toml(const BuildSettings& settings) {
   if (!settings.build.format.attribution.empty()) {
     text += "attribution = " + quoted(settings.build.format.attribution) + "\n";
   }
-  if (!is_native) text += geodetic_toml(settings.geodetic);
-  if (settings.geodetic.is_raster()) text += to_toml(settings.raster);
+  if (!is_native) text += tiling_toml(settings.tiling);
+  if (settings.tiling.is_raster()) text += to_toml(settings.raster);
   return text;
 }
 

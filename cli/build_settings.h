@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/geodetic_build.h"
 #include "cli/raster_build.h"
+#include "cli/tiling_settings.h"
 #include "ingest/dem.h"
 #include "ingest/drape.h"
 #include "ingest/features.h"
@@ -20,7 +20,7 @@ struct BuildSettings {
   ingest::FeatureOptions features;
   ingest::DrapeOptions drape;
   tiler::BuildOptions build;
-  GeodeticSettings geodetic;
+  TilingSettings tiling;
   RasterSettings raster;
 };
 

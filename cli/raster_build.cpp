@@ -37,15 +37,15 @@ std::string to_toml(const RasterSettings& settings) {
 }
 
 tiler::BuildResult build_raster(const ingest::Dem& dem, const HeightStatistics& statistics,
-                                const GeodeticSettings& where, const RasterSettings& settings,
+                                const TilingSettings& tiling, const RasterSettings& settings,
                                 const tiler::BuildOptions& build, const std::filesystem::path& out,
                                 Progress& progress) {
   const ingest::MercatorPlan plan =
-      ingest::plan_mercator(dem, {.tile_px = settings.px, .zoom = where.max_zoom});
+      ingest::plan_mercator(dem, {.tile_px = settings.px, .zoom = tiling.max_zoom});
   const bool is_webp = settings.image == "webp";
   const tiler::RasterOptions options{
-      .encoding = tiler::height_encoding_of(where.format).value(),
-      .fill_m = where.fill_m,
+      .encoding = tiler::height_encoding_of(tiling.format).value(),
+      .fill_m = tiling.fill_m,
       .extension = settings.image,
       .encode = [is_webp](std::span<const std::uint8_t> rgb,
                           int side_px) { return ingest::encode_lossless(rgb, side_px, is_webp); },

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "cli/geodetic_build.h"
+#include "cli/tiling_settings.h"
 #include "core/height_statistics.h"
 #include "core/progress.h"
 #include "ingest/dem.h"
@@ -36,7 +36,7 @@ std::string to_toml(const RasterSettings& settings);
 /// Writes a DEM as pictures of heights in web mercator.
 /// \pre \p out was claimed.
 tiler::BuildResult build_raster(const ingest::Dem& dem, const HeightStatistics& statistics,
-                                const GeodeticSettings& where, const RasterSettings& settings,
+                                const TilingSettings& tiling, const RasterSettings& settings,
                                 const tiler::BuildOptions& build, const std::filesystem::path& out,
                                 Progress& progress);
 

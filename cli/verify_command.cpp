@@ -77,7 +77,7 @@ void check_water(const BuildSettings& settings, const ingest::Dem& levelled, Pro
   if (settings.features.water.empty()) return;
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, progress);
   NoProgress quietly;
-  raise_to_the_ellipsoid(*dem, settings.geodetic, quietly);
+  raise_to_the_ellipsoid(*dem, settings.tiling, quietly);
   const verify::WaterFindings found =
       verify::check_water(dem->heights(), levelled.heights(), dem->place(),
                           water_areas(settings.features.water), settings.build.tolerance_m);
@@ -94,22 +94,22 @@ Verdict verify_folder(const std::filesystem::path& out, const VerifyCommand& com
   if (!command.dem.empty()) settings.dem = command.dem;
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, progress);
   NoProgress quietly;  // what was assumed was said by the build
-  if (!settings.geodetic.is_geodetic()) {
-    if (!settings.geodetic.is_raster()) raise_to_the_ellipsoid(*dem, settings.geodetic, quietly);
+  if (!settings.tiling.is_geodetic()) {
+    if (!settings.tiling.is_raster()) raise_to_the_ellipsoid(*dem, settings.tiling, quietly);
     read_features(settings, *dem, progress);
   }
   check_same_dem(out, *dem, progress);
   const verify::VerifyOptions options{.jobs = command.jobs};
-  if (settings.geodetic.is_raster()) {
+  if (settings.tiling.is_raster()) {
     return verdict_of(verify::verify_pictures(out, dem->heights(), dem->place(),
-                                              settings.geodetic.fill_m, progress));
+                                              settings.tiling.fill_m, progress));
   }
-  if (!settings.geodetic.is_geodetic()) {
+  if (!settings.tiling.is_geodetic()) {
     auto report = verify::verify(out, dem->heights(), dem->place(), options, progress);
     check_water(settings, *dem, progress, report);
     return verdict_of(report);
   }
-  const auto geoid = geoid_of(*dem, settings.geodetic, quietly);
+  const auto geoid = geoid_of(*dem, settings.tiling, quietly);
   const verify::Undulation undulation = [&](const LonLat& place) {
     return geoid == nullptr ? 0 : geoid->undulation_m(place);
   };
