@@ -25,6 +25,8 @@ TERRAIN_SETS = {
     "crater_lake": ("crater_lake/crater_garland_nad27_utm10.tif",
                     f"--geoid egm96 --tolerance 4 --water "
                     f"{DATA / 'crater_lake/crater_lake_shoreline.gpkg'}"),
+    "crater_lake-3dtiles": ("crater_lake/crater_garland_nad27_utm10.tif", "--geoid egm96 --tolerance 16"
+                            " --max-zoom 12 --format 3dtiles-terrain"),
 }
 
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
+#include <GeographicLib/Constants.hpp>
 #include <GeographicLib/Geocentric.hpp>
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,9 @@
 
 namespace terrane::verify {
 namespace {
+
+constexpr double kLast = 32767;
+constexpr double kRad = std::numbers::pi / 180;
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -38,8 +41,7 @@ class GlbExamination {
     found_.push_back({fault, count, std::move(what)});
   }
 
-  /// Meridians meet there, so what is a sound triangle of longitudes and latitudes may be none in
-  /// space.
+  /// Meridians meet there, so corners have no longitudes.
   bool is_at_a_pole(const std::array<std::uint32_t, 3>& corners) const {
     return std::ranges::any_of(kTerrainSides, [&](TerrainFile::Side side) {
       return is_pole(key_, side) && std::ranges::any_of(corners, [&](std::uint32_t v) {
@@ -48,12 +50,32 @@ class GlbExamination {
     });
   }
 
+  /// Where rounding may have moved a vertex to, in steps along u and v.
+  std::array<double, 2> rounding_steps(std::uint32_t v) const {
+    const double latitude_deg = key_.south_deg() + tile_.v[v] / kLast * key_.side_deg();
+    const double step_m = key_.side_deg() * kRad * GeographicLib::Constants::WGS84_a() / kLast;
+    const double shrink = std::max(1e-12, std::cos(latitude_deg * kRad));
+    return {rounding_m_ / (step_m * shrink), rounding_m_ / step_m};
+  }
+
+  /// In longitude and latitude, as quantized-mesh is judged, by more than rounding does.
+  bool is_folded(const std::array<std::uint32_t, 3>& corners) const {
+    const auto [a, b, c] = corners;
+    const double east_b = tile_.u[b] - tile_.u[a], north_b = tile_.v[b] - tile_.v[a];
+    const double east_c = tile_.u[c] - tile_.u[a], north_c = tile_.v[c] - tile_.v[a];
+    double by_east = 0, by_north = 0;
+    for (const std::uint32_t v : corners) {
+      const auto [east, north] = rounding_steps(v);
+      by_east = std::max(by_east, 2 * east), by_north = std::max(by_north, 2 * north);
+    }
+    const double rounding = by_east * (std::abs(north_b) + std::abs(north_c)) +
+                            by_north * (std::abs(east_b) + std::abs(east_c));
+    return a == b || b == c || c == a || east_b * north_c - east_c * north_b < -rounding;
+  }
+
   void check_folds() {
     const auto folded = std::ranges::count_if(tile_.triangles, [&](const auto& corners) {
-      const Eigen::Vector3d& a = tile_.glb_ecef_m[corners[0]];
-      const Eigen::Vector3d& b = tile_.glb_ecef_m[corners[1]];
-      const Eigen::Vector3d& c = tile_.glb_ecef_m[corners[2]];
-      return !((b - a).cross(c - a).dot(a + b + c) > 0) && !is_at_a_pole(corners);
+      return !is_at_a_pole(corners) && is_folded(corners);
     });
     if (folded == 0) return;
     note(TerrainFault::kFolded, folded,
@@ -108,7 +130,6 @@ class GlbExamination {
 
   /// From a vertex to a border, along the ground.
   double distance_m(std::uint32_t v, TerrainFile::Side side) const {
-    constexpr double kRad = std::numbers::pi / 180;
     const Eigen::Vector3d& at = tile_.glb_ecef_m[v];
     if (side == TerrainFile::kWest || side == TerrainFile::kEast) {
       const double deg = key_.west_deg() + (side == TerrainFile::kEast ? key_.side_deg() : 0);
