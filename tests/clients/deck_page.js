@@ -3,6 +3,9 @@ import {Deck, MapView} from '@deck.gl/core';
 import {Tile3DLayer} from '@deck.gl/geo-layers';
 import {Tiles3DLoader} from '@loaders.gl/3d-tiles';
 
+// by itself it fetches its decoder from elsewhere
+const kDraco = {'draco_wasm_wrapper.js': '/draco/draco_wasm_wrapper.js', 'draco_decoder.wasm': '/draco/draco_decoder.wasm'};
+
 /** Shows a tileset from above until nothing more is loaded. */
 window.show = ({url, maximumScreenSpaceError, span}) => new Promise((resolve, reject) => {
   const failed = [];
@@ -12,7 +15,7 @@ window.show = ({url, maximumScreenSpaceError, span}) => new Promise((resolve, re
     initialViewState: {longitude: 0, latitude: 0, zoom: 10},
     layers: [new Tile3DLayer({
       id: 'terrane', data: url, loader: Tiles3DLoader,
-      loadOptions: {worker: false, tileset: {maximumScreenSpaceError, throttleRequests: false}},
+      loadOptions: {worker: false, modules: kDraco, tileset: {maximumScreenSpaceError, throttleRequests: false}},
       onTilesetLoad: (loaded) => {
         tileset = loaded;
         const [longitude, latitude] = tileset.cartographicCenter;
