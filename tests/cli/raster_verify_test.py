@@ -128,6 +128,17 @@ class RasterVerify(unittest.TestCase):
             (out / "terrane.json").write_text(json.dumps(summary))
         self.broken("misstated", lie, "states")
 
+    def test_refuses_bounds_of_other_tiles(self):
+        out = self.folder / "broken"
+        shutil.rmtree(out, ignore_errors=True)
+        shutil.copytree(self.folder / "sound", out)
+        listing = json.loads((out / "tiles.json").read_text())
+        listing["bounds"] = [-180, -85, 180, 85]
+        (out / "tiles.json").write_text(json.dumps(listing))
+        status, _, said = terrane("--quiet", "verify", out)
+        self.assertEqual(status, INPUT)
+        self.assertIn("tiles.json", said)
+
     def test_says_that_it_reads_no_webp(self):
         self.build("webp", "--raster-image", "webp")
         status, _, said = terrane("--quiet", "verify", self.folder / "webp")

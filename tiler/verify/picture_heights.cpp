@@ -127,7 +127,9 @@ class Measurement {
     };
     const auto [left, right] = bounds(0);
     const auto [top, bottom] = bounds(1);
-    for (std::int64_t y = top; y <= bottom; ++y) {
+    // the square ends at 85 degrees; beyond, cells grow without end
+    const auto last = static_cast<std::int64_t>(set_.pixels_across(set_.finest())) - 1;
+    for (std::int64_t y = std::max<std::int64_t>(top, 0); y <= std::min(bottom, last); ++y) {
       for (std::int64_t x = left; x <= right; ++x) {
         const auto in =
             place_in(cell, {static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5});
@@ -144,7 +146,6 @@ class Measurement {
                  double bilinear_m) {
     const std::int64_t px = set_.tile_px;
     const auto across = static_cast<std::int64_t>(set_.pixels_across(set_.finest()));
-    if (y < 0 || y >= across) return;  // where the square ends
     x = (x % across + across) % across;
     const PictureKey key{set_.finest(), x / px, y / px};
     const std::vector<double>& tile = tile_of(key);

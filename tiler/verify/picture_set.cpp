@@ -32,6 +32,25 @@ Square reached(const PictureSet& set, int zoom, double by_px) {
           tile(right - by_px), std::clamp<std::int64_t>(tile(bottom - by_px), 0, last)};
 }
 
+/// Whoever lists the tiles of damaged bounds would never come to an end.
+void check_bounds(const PictureSet& set, const std::filesystem::path& listing) {
+  const auto& [west, south, east, north] = set.bounds_deg;
+  if (!(west >= -180 && west < east && east <= west + 361 && south >= -90 && south < north &&
+        north <= 90)) {
+    throw damaged(listing, "has bounds that are none");
+  }
+  for (int zoom = 0; zoom <= set.finest(); ++zoom) {
+    const Square tiles = reached(set, zoom, 0);
+    const auto columns = static_cast<double>(tiles.right - tiles.left + 1);
+    const auto rows = static_cast<double>(tiles.bottom - tiles.top + 1);
+    // a row and a column more, where the bounds only touch them
+    const auto stated = static_cast<double>(set.zooms[static_cast<std::size_t>(zoom)].tiles);
+    if (columns * rows <= 4 * stated + 4) continue;
+    throw damaged(listing, fmt::format("has bounds of {} tiles at zoom {}, terrane.json has {}",
+                                       columns * rows, zoom, stated));
+  }
+}
+
 }  // namespace
 
 std::string to_string(const PictureKey& key) {
@@ -123,6 +142,7 @@ PictureSet read_picture_set(const std::filesystem::path& folder) {
     throw damaged(listing, fmt::format("names {} as the finest zoom, terrane.json has {} zooms",
                                        finest, set.zooms.size()));
   }
+  check_bounds(set, listing);
   return set;
 }
 

@@ -54,7 +54,9 @@ std::string property_with(const json& properties, const std::string& semantic) {
 }
 
 TerrainProperties properties_of(const json& schema) {
-  const json& properties = schema.at("classes").front().at("properties");
+  const json& classes = schema.at("classes");
+  if (classes.empty()) throw json::other_error::create(501, "the schema has no class", nullptr);
+  const json& properties = classes.begin()->at("properties");
   return {.min_height = property_with(properties, "TILE_MINIMUM_HEIGHT"),
           .max_height = property_with(properties, "TILE_MAXIMUM_HEIGHT"),
           .bounding_sphere = property_with(properties, "TILE_BOUNDING_SPHERE"),
