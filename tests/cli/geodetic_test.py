@@ -103,6 +103,13 @@ class Geodetic(unittest.TestCase):
         self.assertEqual(bytes_below(self.folder / "tiles").keys(),
                          bytes_below(self.folder / "mesh").keys())
 
+    def test_refuses_a_tolerance_that_tiles_half_round_the_earth_cannot_hold(self):
+        row = " ".join(str(100 * (column % 7)) for column in range(72))
+        self.dem.write_text("ncols 72\nnrows 36\nxllcorner -180\nyllcorner -90\ncellsize 5\n" +
+                            (row + "\n") * 36)
+        self.refuse(USAGE, ["--crs", "EPSG:4326", "--scheme", "geodetic", "--geoid", "none",
+                            "--max-zoom", "2", "--tolerance", "100"], "--tolerance 100", "zoom 1")
+
     def test_refuses_what_cannot_be_in_one_line(self):
         crs = ["--crs", "EPSG:4326"]
         geodetic = [*crs, "--scheme", "geodetic"]

@@ -4,10 +4,12 @@
 
 #include <Eigen/Geometry>
 
+#include "core/errors.h"
 #include "tiler/build_tile.h"
 #include "tiler/files/output_folder.h"
 #include "tiler/geodetic/grid_lattice.h"
 #include "tiler/level_rounds.h"
+#include "tiler/tile/tile_frame.h"
 
 namespace terrane::tiler {
 namespace {
@@ -39,6 +41,7 @@ class BandBuild {
   }
 
   std::vector<TileRecord> run() {
+    check_frames();
     for (int level = 0; level < level_count(); ++level) {
       rounds_.build(level, fmt::format("zoom {}", options_.tiles.zoom - level),
                     [this](const TileId& tile) { build_tile(tile); });
@@ -52,6 +55,28 @@ class BandBuild {
   }
 
  private:
+  /// What curves farther round the Earth than a polynomial follows is refused before a tile is
+  /// built.
+  void check_frames() const {
+    const int top = level_count() - 1;
+    std::vector<Window> windows;
+    for (const TileId& tile : pyramid_.tiles(top)) windows.push_back(pyramid_.window(tile));
+    // seams of posts take a strip of them alone
+    for (const SeamId& seam : top > 0 ? seams(pyramid_, top) : std::vector<SeamId>{}) {
+      windows.push_back(both_sides(pyramid_, seam));
+    }
+    for (const Window& window : windows) {
+      try {
+        const TileFrame frame(world_, lattice_, window, top);
+      } catch (const InputError&) {
+        throw ConfigError(fmt::format(
+            "--tolerance {}: is too small for tiles of zoom {}, which reach far round the Earth. "
+            "Use a larger one, or a larger --max-zoom",
+            options_.tolerance_m.front(), options_.tiles.zoom - top));
+      }
+    }
+  }
+
   int level_count() const { return static_cast<int>(options_.tolerance_m.size()); }
 
   void build_tile(const TileId& tile) const {

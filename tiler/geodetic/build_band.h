@@ -31,6 +31,7 @@ using WriteTerrain = std::function<std::int64_t(const TerrainTile&)>;
 ///
 /// Goes on from what an earlier run left in the work folder.
 /// \return what was written, in no particular order; TileId as the band counts.
+/// \throws ConfigError if a tile reaches so far round the Earth that the tolerance cannot be held.
 std::vector<TileRecord> build_band(const GeodeticHeights& heights, const BandOptions& options,
                                    const WriteTerrain& write, Progress& progress);
 
