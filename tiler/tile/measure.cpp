@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -10,6 +11,7 @@
 
 #include "hierarchy/collapse/sample_field.h"
 #include "hierarchy/collapse/within_task.h"
+#include "tiler/tile/plane_along_row.h"
 
 namespace terrane::tiler {
 namespace {
@@ -40,6 +42,9 @@ class PlumbTriangle {
     return side_c_.dot(q) * scale;
   }
 
+  const Eigen::Vector3d& corner() const { return corner_; }
+  Eigen::Vector3d normal() const { return side_b_.cross(side_c_); }
+
  private:
   Eigen::Vector3d corner_, side_b_, side_c_;
 };
@@ -48,6 +53,57 @@ FieldSample field_sample(const LooseSample& loose, const TileFrame& frame) {
   return {static_cast<float>(loose.column), static_cast<float>(loose.row),
           loose.height_m - frame.drop_m(loose.column, loose.row)};
 }
+
+/// The columns of each row that lie in a triangle over the grid, away from its sides.
+class InnerColumns {
+ public:
+  InnerColumns(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c, double margin_cells) {
+    const FieldPoint* corners[] = {&a, &b, &c, &a};
+    const double turn = doubled_area(a, b, c) > 0 ? 1 : -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const FieldPoint &p = *corners[k], &q = *corners[k + 1];
+      const double along = turn * (q.column - p.column), down = turn * (q.row - p.row);
+      const double margin = margin_cells * std::hypot(along, down);
+      // inside: down * (column - p.column) - along * (row - p.row) >= margin
+      if (down == 0) {
+        const double inwards = along > 0 ? -1 : 1;
+        top_ = inwards > 0 ? std::max(top_, p.row + margin_cells) : top_;
+        bottom_ = inwards < 0 ? std::min(bottom_, p.row - margin_cells) : bottom_;
+        continue;
+      }
+      const Side side{p.column + (margin - along * p.row) / down, along / down};
+      (down > 0 ? left_[lefts_++] : right_[rights_++]) = side;
+    }
+  }
+
+  /// First and last; empty if the first is greater.
+  std::pair<std::int64_t, std::int64_t> of_row(std::int64_t row, std::int64_t first,
+                                               std::int64_t last) const {
+    const auto at = static_cast<double>(row);
+    if (at < top_ || at > bottom_) return {last + 1, last};
+    auto left = static_cast<double>(first), right = static_cast<double>(last);
+    for (std::size_t k = 0; k < lefts_; ++k) left = std::max(left, left_[k].column(at));
+    for (std::size_t k = 0; k < rights_; ++k) right = std::min(right, right_[k].column(at));
+    if (!(left <= right)) return {last + 1, last};
+    return {static_cast<std::int64_t>(std::ceil(left)),
+            static_cast<std::int64_t>(std::floor(right))};
+  }
+
+ private:
+  struct Side {
+    double at_row_0, per_row;
+    double column(double row) const { return at_row_0 + per_row * row; }
+  };
+
+  static double doubled_area(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c) {
+    return (b.row - a.row) * (c.column - a.column) - (b.column - a.column) * (c.row - a.row);
+  }
+
+  std::array<Side, 3> left_, right_;
+  std::size_t lefts_ = 0, rights_ = 0;
+  double top_ = -std::numeric_limits<double>::infinity();
+  double bottom_ = std::numeric_limits<double>::infinity();
+};
 
 /// The samples of a patch, and where they stand in the world.
 class Patch {
@@ -69,6 +125,13 @@ class Patch {
   }
   double height_m(std::int64_t column, std::int64_t row) const {
     return grid_.at(window.column + column, window.row + row);
+  }
+  const TileFrame::Row& row(std::int64_t row) const { return rows_[static_cast<std::size_t>(row)]; }
+  /// Heights of a row from some column on.
+  const float* heights_m(std::int64_t column, std::int64_t row) const {
+    const Window& of_grid = grid_.window;
+    return grid_.heights_m.data() + (window.row + row - of_grid.row) * of_grid.columns +
+           window.column + column - of_grid.column;
   }
   /// The k-th sample, row by row, for a SampleField of the tile.
   FieldSample sample(std::size_t k) const {
@@ -211,11 +274,17 @@ class Measurement {
     const PlumbTriangle triangle(a.world, b.world, c.world);
     const double slack_cells =
         kPlanRounding_cells + std::max({bend_cells(a, b), bend_cells(b, c), bend_cells(c, a)});
-    for_each_span(patch_.local(a.plan), patch_.local(b.plan), patch_.local(c.plan), shape_,
-                  slack_cells, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-                    for (std::int64_t column = first; column <= last; ++column) {
-                      const auto height_m = triangle.height_m(patch_.plumb(column, row));
-                      if (height_m) add(column, row, *height_m);
+    const FieldPoint p = patch_.local(a.plan), q = patch_.local(b.plan), r = patch_.local(c.plan);
+    const InnerColumns inner(p, q, r, slack_cells);
+    for_each_span(p, q, r, shape_, slack_cells,
+                  [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+                    const auto [begin, end] = inner.of_row(row, first, last);
+                    if (end - begin < kFewColumns) {
+                      add_one_by_one(triangle, row, first, last);
+                    } else {
+                      add_one_by_one(triangle, row, first, begin - 1);
+                      add_inner(triangle, row, begin, end);
+                      add_one_by_one(triangle, row, end + 1, last);
                     }
                     return true;
                   });
@@ -265,6 +334,25 @@ class Measurement {
 
  private:
   static constexpr double kUnmeasured = -1;
+  // in a row, that it does not pay to find a polynomial for
+  static constexpr std::int64_t kFewColumns = 3;
+
+  /// Those that the triangle may be beside of, too.
+  void add_one_by_one(const PlumbTriangle& triangle, std::int64_t row, std::int64_t first,
+                      std::int64_t last) {
+    for (std::int64_t column = first; column <= last; ++column) {
+      const auto height_m = triangle.height_m(patch_.plumb(column, row));
+      if (height_m) add(column, row, *height_m);
+    }
+  }
+
+  void add_inner(const PlumbTriangle& triangle, std::int64_t row, std::int64_t first,
+                 std::int64_t last) {
+    const auto count = static_cast<std::size_t>(last - first + 1);
+    const PlaneAlongRow plane(patch_.row(row), triangle.corner(), triangle.normal());
+    plane.raise_errors(patch_.first_column + first, {patch_.heights_m(first, row), count},
+                       {&worst_m(first, row), count});
+  }
 
   /// The nearest point of the rim to a sample beside it.
   struct NearRim {

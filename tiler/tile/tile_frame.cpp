@@ -166,6 +166,19 @@ Plumb TileFrame::Row::plumb(double column) const {
   return {value.head<3>(), value.tail<3>()};
 }
 
+TileFrame::AlongRow TileFrame::Row::along(const Eigen::Vector3d& direction,
+                                          Eigen::Index first_value) const {
+  AlongRow result;
+  // of a single column there is the middle alone
+  if (half_columns_ > 0) result.degree = static_cast<int>(coefficients_.cols()) - 1;
+  if (half_columns_ > 0) result.per_column = 1 / half_columns_;
+  for (Eigen::Index i = 0; i <= result.degree; ++i) {
+    result.coefficients[static_cast<std::size_t>(i)] =
+        direction.dot(coefficients_.block<3, 1>(first_value, i));
+  }
+  return result;
+}
+
 double TileFrame::drop_m(double column, double row) const {
   const double x = column - half_columns_, y = row - half_rows_;
   return curvature_[0] * x * x + curvature_[1] * x * y + curvature_[2] * y * y;

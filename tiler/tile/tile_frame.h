@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "core/height_grid.h"
@@ -23,13 +24,29 @@ class TileFrame final : public hierarchy::Placer {
 
   Plumb plumb(double column, double row) const;
 
+  static constexpr int kHighestDegree = 12;
+
+  /// A polynomial along a row, of column * per_column - 1.
+  struct AlongRow {
+    int degree = 0;
+    double per_column = 0;
+    std::array<double, kHighestDegree + 1> coefficients;  ///< of rising powers
+  };
+
   /// The map along one row: cheaper than plumb() for many columns.
   class Row {
    public:
     Plumb plumb(double column) const;
 
+    /// How far the bases of the plumb lines are along a direction, and what their upward
+    /// directions have of it.
+    AlongRow along_base(const Eigen::Vector3d& direction) const { return along(direction, 0); }
+    AlongRow along_up(const Eigen::Vector3d& direction) const { return along(direction, 3); }
+
    private:
     friend class TileFrame;
+    AlongRow along(const Eigen::Vector3d& direction, Eigen::Index first_value) const;
+
     double half_columns_ = 0;
     Eigen::Matrix<double, 6, Eigen::Dynamic> coefficients_;  // of the powers of the column
   };
@@ -55,8 +72,6 @@ class TileFrame final : public hierarchy::Placer {
   double spacing_m() const { return spacing_m_; }
 
  private:
-  static constexpr int kHighestDegree = 12;
-
   bool fit(const WorldFrame& world, const Window& window, int degree, double wanted_accuracy_m);
   void derive(const Window& window);
   hierarchy::Place solve(const Eigen::Vector3d& at) const;
