@@ -43,6 +43,7 @@ TERRANE_LANES_INLINE std::array<Value, N> split(std::array<Value, N>& p) {
 struct Passage {
   std::array<Quadratic, 3> inside;  ///< all at least 0 while the sample is under the triangle
   Cubic room;  ///< at least 0 while the triangle is not too high over it, or too low
+  std::array<double, 3> begin_room_m, end_room_m;  ///< the same for each corner
   double rounding;
 
   bool is_outside() const {
@@ -53,6 +54,11 @@ struct Passage {
     return room[0] >= -rounding && room[1] >= -rounding && room[2] >= -rounding &&
            room[3] >= -rounding;
   }
+  /// Then all between the corners has room, however the sample passes.
+  bool have_corners_room() const {
+    return std::min({begin_room_m[0], begin_room_m[1], begin_room_m[2], end_room_m[0],
+                     end_room_m[1], end_room_m[2]}) >= 0;
+  }
   bool fails_at_begin() const {
     return room[0] < -rounding && inside[0][0] >= 0 && inside[1][0] >= 0 && inside[2][0] >= 0;
   }
@@ -60,14 +66,18 @@ struct Passage {
     return room[3] < -rounding && inside[0][2] >= 0 && inside[1][2] >= 0 && inside[2][2] >= 0;
   }
   Passage split_off_first() {
-    Passage first{.inside = {}, .room = split(room), .rounding = rounding};
-    for (std::size_t k = 0; k < 3; ++k) first.inside[k] = split(inside[k]);
+    Passage first = *this;
+    first.room = split(room);
+    for (std::size_t k = 0; k < 3; ++k) {
+      first.inside[k] = split(inside[k]);
+      first.end_room_m[k] = begin_room_m[k] = (begin_room_m[k] + end_room_m[k]) / 2;
+    }
     return first;
   }
 };
 
 bool is_sound(const Passage& passage, int splits) {
-  if (passage.has_room() || passage.is_outside()) return true;
+  if (passage.has_room() || passage.is_outside() || passage.have_corners_room()) return true;
   if (passage.fails_at_begin() || passage.fails_at_end()) return false;
   if (splits == 0) return true;
   Passage second = passage;
@@ -85,6 +95,12 @@ MovingTriangle::MovingTriangle(const std::array<FieldPoint, 3>& from,
                                const std::array<FieldPoint, 3>& to, double slack_cells)
     : from_(from), to_(to) {
   const double column = from[0].column, row = from[0].row;
+  for (const auto* corners : {&from, &to}) {
+    for (const FieldPoint& corner : *corners) {
+      lowest_m_ = std::min(lowest_m_, corner.height_m);
+      highest_m_ = std::max(highest_m_, corner.height_m);
+    }
+  }
   // twice the area of (p, q, sample), where p and q may be of different times
   const auto area = [&](const FieldPoint& p, const FieldPoint& q) {
     const double px = p.column - column, py = p.row - row;
@@ -108,9 +124,18 @@ MovingTriangle::MovingTriangle(const std::array<FieldPoint, 3>& from,
   slack_ = slack_cells * std::sqrt(longest2) / whole_[0];
 }
 
+bool MovingTriangle::is_near_all_corners(double height_m, double tolerance_m) const {
+  return height_m >= highest_m_ - tolerance_m && height_m <= lowest_m_ + tolerance_m;
+}
+
 bool MovingTriangle::stays_within(const FieldSample& sample, double tolerance_m) const {
+  if (is_near_all_corners(sample.height_m, tolerance_m)) return true;
   const double column = sample.column - from_[0].column, row = sample.row - from_[0].row;
-  Passage passage{.inside = {}, .room = {}, .rounding = tolerance_m * whole_[0]};
+  Passage passage{.inside = {},
+                  .room = {},
+                  .begin_room_m = {},
+                  .end_room_m = {},
+                  .rounding = tolerance_m * whole_[0]};
   Cubic off{0, 0, 0, 0};
   for (std::size_t k = 0; k < 3; ++k) {
     Quadratic& area = passage.inside[k];
@@ -130,6 +155,10 @@ bool MovingTriangle::stays_within(const FieldSample& sample, double tolerance_m)
   for (const double sign : {-1.0, 1.0}) {
     for (std::size_t i = 0; i < 4; ++i) {
       passage.room[i] = tolerance_m * whole[i] + sign * off[i];
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      passage.begin_room_m[k] = tolerance_m + sign * (from_[k].height_m - sample.height_m);
+      passage.end_room_m[k] = tolerance_m + sign * (to_[k].height_m - sample.height_m);
     }
     if (!is_sound(passage, kMostSplits)) return false;
   }
@@ -175,6 +204,10 @@ class MovingTriangle::Sweep {
           static_cast<float>(-triangle.slack_ * std::max(0.0, whole[i]) - area_doubt);
     }
     highest_m_ = static_cast<float>(2 * (relief_m + tolerance_m));
+    const double doubt_m = kDoubt * (relief_m + tolerance_m);
+    near_from_m_ =
+        static_cast<float>(triangle.highest_m_ - tolerance_m + doubt_m - origin.height_m);
+    near_to_m_ = static_cast<float>(triangle.lowest_m_ + tolerance_m - doubt_m - origin.height_m);
   }
 
   /// Part of a row of a field.
@@ -225,34 +258,35 @@ class MovingTriangle::Sweep {
 
   /// Samples of a row.
   struct RowSamples {
-    const double* heights_m;
+    const double* all_heights_m;
     double first_column, row;
     const FieldPoint& origin;
     std::size_t count;
 
     FieldSample operator[](std::size_t k) const {
       return {static_cast<float>(first_column + static_cast<double>(k)), static_cast<float>(row),
-              heights_m[k]};
+              all_heights_m[k]};
     }
-    TERRANE_LANES_INLINE Eight eight(std::size_t first) const {
-      Eight eight{};
-      const auto x = static_cast<float>(first_column - origin.column + static_cast<double>(first));
-      eight.x = x + lane_numbers();
-      eight.y = all_lanes(static_cast<float>(row - origin.row));
-      const double* from = heights_m + first;
+    TERRANE_LANES_INLINE Lanes heights_m(std::size_t first) const {
+      Lanes result{};
+      const double* from = all_heights_m + first;
       if (first + kLanes <= count) {
         for (std::size_t k = 0; k < kLanes; ++k) {
-          eight.height_m[k] = static_cast<float>(from[k] - origin.height_m);
+          result[k] = static_cast<float>(from[k] - origin.height_m);
         }
-        return eight;
+        return result;
       }
       for (std::size_t k = 0; k < kLanes; ++k) {
         const std::size_t at = std::min(k, count - first - 1);
-        eight.height_m[k] = static_cast<float>(from[at] - origin.height_m);
+        result[k] = static_cast<float>(from[at] - origin.height_m);
       }
-      const auto last = static_cast<float>(count - first - 1);
-      eight.x = min(eight.x, all_lanes(x + last));
-      return eight;
+      return result;
+    }
+    TERRANE_LANES_INLINE Eight eight(std::size_t first, const Lanes& height_m) const {
+      const auto x = static_cast<float>(first_column - origin.column + static_cast<double>(first));
+      const auto last = static_cast<float>(std::min(kLanes, count - first) - 1);
+      return {x + min(lane_numbers(), all_lanes(last)),
+              all_lanes(static_cast<float>(row - origin.row)), height_m};
     }
   };
 
@@ -263,13 +297,20 @@ class MovingTriangle::Sweep {
     std::size_t count = samples.size();
 
     FieldSample operator[](std::size_t k) const { return samples[k]; }
-    TERRANE_LANES_INLINE Eight eight(std::size_t first) const {
-      Eight eight{};
+    TERRANE_LANES_INLINE Lanes heights_m(std::size_t first) const {
+      Lanes result{};
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const FieldSample& sample = samples[std::min(first + k, count - 1)];
+        result[k] = static_cast<float>(sample.height_m - origin.height_m);
+      }
+      return result;
+    }
+    TERRANE_LANES_INLINE Eight eight(std::size_t first, const Lanes& height_m) const {
+      Eight eight{{}, {}, height_m};
       for (std::size_t k = 0; k < kLanes; ++k) {
         const FieldSample& sample = samples[std::min(first + k, count - 1)];
         eight.x[k] = static_cast<float>(sample.column - origin.column);
         eight.y[k] = static_cast<float>(sample.row - origin.row);
-        eight.height_m[k] = static_cast<float>(sample.height_m - origin.height_m);
       }
       return eight;
     }
@@ -289,12 +330,15 @@ class MovingTriangle::Sweep {
 
     TERRANE_LANES_INLINE Doubt run() const {
       for (std::size_t first = begin; first < samples.count; first += kLanes) {
-        const Eight eight = samples.eight(first);
+        const Lanes height_m = samples.heights_m(first);
         // samples without data are as good as cleared
-        const LaneMask is_void = eight.height_m != eight.height_m;
+        const LaneMask is_known = (height_m != height_m) | ((height_m >= sweep.near_from_m_) &
+                                                            (height_m <= sweep.near_to_m_));
+        if (!any(~is_known)) continue;
+        const Eight eight = samples.eight(first, height_m);
         const LaneMask is_cleared =
-            is_void | ((abs(eight.height_m) <= sweep.highest_m_) &
-                       are_sound<kSplitsAtOnce>(sweep.passages(eight), sweep.limits_, is_void));
+            is_known | ((abs(height_m) <= sweep.highest_m_) &
+                        are_sound<kSplitsAtOnce>(sweep.passages(eight), sweep.limits_, is_known));
         if (any(~is_cleared)) return {first, bits_of(~is_cleared)};
       }
       return {samples.count, 0};
@@ -370,6 +414,7 @@ class MovingTriangle::Sweep {
   float constant_[3][3], per_column_[3][3], per_row_[3][3], first_m_[3], last_m_[3];
   Limits limits_;
   float highest_m_;
+  float near_from_m_, near_to_m_;  // heights that are near those of all corners
 };
 
 bool MovingTriangle::stays_within(const SampleField& field, double tolerance_m) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "hierarchy/collapse/sample_field.h"
 
@@ -39,10 +40,16 @@ class MovingTriangle {
     }
   };
 
+  /// Is a height within the tolerance of those of all corners at both ends? Then it is of all that
+  /// lies between them.
+  bool is_near_all_corners(double height_m, double tolerance_m) const;
+
   /// Corners that are in one place at t = 1: 0, 2 or 3.
   int meeting_corners() const;
 
   std::array<FieldPoint, 3> from_, to_;
+  double lowest_m_ = std::numeric_limits<double>::infinity();  // of the corners at both ends
+  double highest_m_ = -std::numeric_limits<double>::infinity();
   /// Bernstein coefficients of the area opposite corner k over a sample, see from_[0]
   std::array<std::array<Affine, 3>, 3> areas_;
   std::array<double, 3> whole_;  // those of the whole area
