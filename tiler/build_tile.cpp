@@ -145,31 +145,38 @@ class TileBuild {
         source_.lattice.smallest_altitude_steps() * step_m() / frame_.spacing_m();
     options.steepest_m = source_.steepest * frame_.spacing_m();
 
-    // what a reduced reference learns is soon little each time
-    constexpr int kMostTries = 12, kTriesToLearn = 6;
-    int tightened = 0;
+    constexpr int kMostTries = 12;
     for (int tries = 1;; ++tries) {
       const StrictResult result =
           hierarchy::collapse_strictly(input, reference_.field(), frame_, finer, options);
       Measured measured = measure(measured_meshes(input, finer, finer_points, result), samples_,
                                   frame_, step_m(), kNotedShare * tolerance_m);
       const double worst_m = worst_of(measured);
-      if (worst_m <= tolerance_m) {
-        // what seams decided was held to the whole tolerance, and cannot be held to less
-        measured.noted = left_by_blend(finer, result, tolerance_m);
-        if (measured.noted.empty()) {
-          return {written_mesh(result.mesh, measured.errors[0]), targets(result)};
-        }
+      // what seams decided was held to the whole tolerance, and cannot be held to less
+      const auto left = left_by_blend(finer, result, tolerance_m);
+      if (worst_m <= tolerance_m && left.empty()) {
+        return {written_mesh(result.mesh, measured.errors[0]), targets(result)};
       }
       if (tries == kMostTries) refuse(worst_m, tolerance_m);
-      if (reference_.learn(measured.noted) && tries < kTriesToLearn) continue;
-      // gently at first: most are over by a thousandth
-      ++tightened;
-      options.tolerance_m *= std::min(1 - 0.005 * (1 << tightened), 0.999 * tolerance_m / worst_m);
+      measured.noted.insert(measured.noted.end(), left.begin(), left.end());
+      reference_.learn(measured.noted);
+      options.tolerance_m *= tightening(tries, worst_m, tolerance_m);
     }
   }
 
  private:
+  /// What becomes of the tolerance after a try. A reduced reference has then learnt, and often
+  /// needs no more; and how far off its mesh was somewhere tells nothing about the next one.
+  double tightening(int tries, double worst_m, double tolerance_m) const {
+    constexpr int kTriesToLearn = 2;
+    const bool is_whole = reference_.is_whole();
+    if (!is_whole && tries <= kTriesToLearn) return 1;
+    // gently at first: most are over by a thousandth
+    const int doublings = std::min(tries - (is_whole ? 0 : kTriesToLearn), 5);
+    const double gentle = 1 - 0.005 * (1 << doublings);
+    return is_whole ? std::min(gentle, 0.999 * tolerance_m / worst_m) : gentle;
+  }
+
   double step_m() const { return source_.lattice.step_m(tile_.level).x(); }
 
   void put(const std::vector<TerrainVertex*>& vertices, const std::vector<GridPosition>& positions,

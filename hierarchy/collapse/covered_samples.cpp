@@ -30,7 +30,7 @@ bool is_inner(const TerrainVertex& vertex) { return vertex.kind == VertexKind::k
 CoveredSamples::CoveredSamples(const SampleField& field, std::span<const TerrainVertex> vertices,
                                std::span<const Corners> triangles, std::size_t triangle_capacity)
     : lists_(triangle_capacity) {
-  const std::size_t all = std::max(field.heights_m.size(), field.kept.size());
+  const std::size_t all = field.is_reduced() ? field.kept.size() : field.heights_m.size();
   std::vector<bool> is_claimed(all, false);
   std::vector<CoveredSample> found;
   std::vector<std::uint32_t> owner;

@@ -427,7 +427,11 @@ bool MovingTriangle::stays_within(const SampleField& field, double tolerance_m) 
   if (count == 3) return true;
   const std::span<const FieldPoint> hull = std::span(corners).first(count);
   const Sweep sweep(*this, tolerance_m);
-  if (field.is_reduced()) return for_each_kept_run_of_hull(hull, field, field.slack_cells, sweep);
+  if (field.is_reduced()) {
+    // the few first: most that is refused is so by them
+    const bool is_near_kept = for_each_kept_run_of_hull(hull, field, field.slack_cells, sweep);
+    if (!is_near_kept || !field.is_backed()) return is_near_kept;
+  }
   return for_each_span_of_hull(hull, {field.columns, field.rows}, field.slack_cells,
                                [&](std::int64_t row, std::int64_t first, std::int64_t last) {
                                  return sweep(field, row, first, last);

@@ -40,6 +40,12 @@ class Star {
   /// \pre gather_few() was the last call, with the same samples.
   void gather_rest(const CoveredSamples& samples);
 
+  /// Adds one that is not among them.
+  void learn(const CoveredSample& sample) {
+    add({&sample, 1});
+    pad_samples();
+  }
+
   /// A place counted from origin().
   struct Centre {
     float x = 0, y = 0;

@@ -7,6 +7,7 @@
 #include "hierarchy/collapse/boundary_rule.h"
 #include "hierarchy/collapse/edge_flip.h"
 #include "hierarchy/collapse/morph_guard.h"
+#include "hierarchy/collapse/star_error.h"
 #include "hierarchy/collapse/star_fit.h"
 #include "hierarchy/collapse/triangle_plane.h"
 
@@ -29,6 +30,9 @@ constexpr std::int32_t kPartsOfWay[] = {4, 2, 8, 16};
 
 // how far from its middle a core looks for more places: 1/4 of the way to each neighbour
 constexpr std::int32_t kPartsBesideMiddle = 4;
+
+// samples that a place is held against one after the other, if it first was not
+constexpr int kMostLearnt = 4;
 
 // a sweep that collapses less than one in this many triangles is the last
 constexpr std::int64_t kTooFew = 500;
@@ -61,6 +65,7 @@ class StrictCollapse {
         placer_(placer),
         options_(options),
         smallest_altitude_cells_(static_cast<float>(options.smallest_altitude_cells)),
+        field_(field),
         samples_(field, vertices_, mesh_.triangles(), mesh_.triangle_count()),
         changed_(vertices_.size(), 0),
         disturbed_(vertices_.size(), 0),
@@ -317,8 +322,11 @@ class StrictCollapse {
     const bool is_judged_by_keen = star_.keen_count() > 0;
     if (!is_judged_by_keen) fit_candidates();
     while (Candidate* best = least_squared_error()) {
-      if (!is_judged_by_keen || fit(*best)) {
+      bool is_worth_it = !is_judged_by_keen || fit(*best);
+      for (int times = 0; is_worth_it && times < kMostLearnt; ++times) {
+        has_learnt_ = false;
         if (const std::optional<Place> place = written(*best)) return place;
+        is_worth_it = has_learnt_ && fit(*best);
       }
       best->is_rejected = true;
     }
@@ -345,8 +353,20 @@ class StrictCollapse {
     candidates_.assign(1, {place.plan, place.height_m});
     if (!fit(candidates_[0]) || !is_sound(place)) return std::nullopt;
     refusal_ = Collapsibility::kOverTolerance;
-    if (!judge_.holds(star_, place, tolerance_m_) || !blends(place)) return std::nullopt;
+    if (!holds(place) || !blends(place)) return std::nullopt;
     return place;
+  }
+
+  /// Is the star around a place near all samples, those that the reference leaves out as well? The
+  /// worst of these is learnt.
+  bool holds(const Place& place) {
+    if (!judge_.holds(star_, place, tolerance_m_)) return false;
+    if (!field_.is_backed()) return true;
+    CoveredSample worst;
+    if (worst_under_star(star_, place, field_, worst) <= tolerance_m_) return true;
+    star_.learn(worst);
+    has_learnt_ = true;
+    return false;
   }
 
   /// Can the finer level's vertices that are in the core go to this place?
@@ -381,7 +401,7 @@ class StrictCollapse {
                                                  : placer_.over_datum_m(candidate.plan, water_m_);
     const Place place = placer_.place(candidate.plan, height_m);
     if (!is_sound(place)) return std::nullopt;
-    if (!judge_.holds(star_, place, tolerance_m_) || !blends(place)) return std::nullopt;
+    if (!holds(place) || !blends(place)) return std::nullopt;
     return place;
   }
 
@@ -486,6 +506,7 @@ class StrictCollapse {
   const Placer& placer_;
   const StrictOptions& options_;
   float smallest_altitude_cells_;
+  const SampleField& field_;
   CoveredSamples samples_;
   std::optional<MorphGuard> guard_;
   std::optional<LineChains> lines_;
@@ -505,6 +526,7 @@ class StrictCollapse {
   EdgeFlip flip_;
   Star star_;
   StarJudge judge_;
+  bool has_learnt_ = false;  // a sample, since a place was to be written
   Collapsibility refusal_ = Collapsibility::kYes;
   StrictResult result_;
 };

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace terrane::tiler {
@@ -10,6 +11,14 @@ namespace {
 
 using hierarchy::FieldSample;
 using hierarchy::SampleField;
+
+bool is_before(const FieldSample& a, const FieldSample& b) {
+  return std::pair(a.row, a.column) < std::pair(b.row, b.column);
+}
+
+bool is_same(const FieldSample& a, const FieldSample& b) {
+  return a.row == b.row && a.column == b.column;
+}
 
 double height_over_datum(const HeightGrid& grid, const Window& tile, const TileFrame& frame,
                          std::int64_t column, std::int64_t row) {
@@ -61,29 +70,82 @@ void for_each_part(const Window& window, std::int64_t side, const Visit& visit) 
   }
 }
 
+/// A plane over some block, from a corner of its trend on.
+struct Plane {
+  double constant, per_column, per_row;
+  double above_m(double x, double y, double z) const {
+    return z - (constant + per_column * x + per_row * y);
+  }
+};
+
+/// The trend, and the same tilted to each side as steeply as the terrain departs from it: whatever
+/// plane a mesh has there, what sticks out most of it sticks out of one of these about as much.
+class Trends {
+ public:
+  static constexpr std::size_t kCount = TileSamples::kExtremesPerBlock / 2;
+
+  Trends(const Window& around, const HeightGrid& grid, const Window& tile, const TileFrame& frame)
+      : x0_(static_cast<double>(around.column - tile.column)),
+        y0_(static_cast<double>(around.row - tile.row)) {
+    TrendPlane fitted;
+    for_each_height(around, grid, tile, frame,
+                    [&](double x, double y, double z) { fitted.add(x - x0_, y - y0_, z); });
+    const Eigen::Vector3d terms = fitted.solve();
+    const Plane trend{terms[0], terms[1], terms[2]};
+    double highest_m = 0, lowest_m = 0;
+    for_each_height(around, grid, tile, frame, [&](double x, double y, double z) {
+      const double above_m = trend.above_m(x - x0_, y - y0_, z);
+      highest_m = std::max(highest_m, above_m);
+      lowest_m = std::min(lowest_m, above_m);
+    });
+    const double tilt =
+        (highest_m - lowest_m) / static_cast<double>(std::max(around.columns, around.rows));
+    constexpr double kSides[kCount][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+    for (std::size_t k = 0; k < kCount; ++k) {
+      planes_[k] = trend;
+      planes_[k].per_column += kSides[k][0] * tilt;
+      planes_[k].per_row += kSides[k][1] * tilt;
+    }
+  }
+
+  double above_m(std::size_t k, double x, double y, double z) const {
+    return planes_[k].above_m(x - x0_, y - y0_, z);
+  }
+
+ private:
+  double x0_, y0_;
+  std::array<Plane, kCount> planes_;
+};
+
+/// A sample, and how far it sticks out.
+struct Extreme {
+  double by_m = -INFINITY;
+  FieldSample sample;
+};
+
 /// Appends the extremes of the blocks of one trend.
 void add_extremes(const Window& around, std::int64_t block_cells, const HeightGrid& grid,
                   const Window& tile, const TileFrame& frame, std::vector<FieldSample>& result) {
-  const auto x0 = static_cast<double>(around.column - tile.column);
-  const auto y0 = static_cast<double>(around.row - tile.row);
-  TrendPlane plane;
-  for_each_height(around, grid, tile, frame,
-                  [&](double x, double y, double z) { plane.add(x - x0, y - y0, z); });
-  const Eigen::Vector3d trend = plane.solve();
-
+  const Trends trends(around, grid, tile, frame);
   for_each_part(around, block_cells, [&](const Window& block) {
-    FieldSample top, bottom;
-    double highest = -INFINITY, lowest = INFINITY;
+    std::array<Extreme, TileSamples::kExtremesPerBlock> extremes;
     for_each_height(block, grid, tile, frame, [&](double x, double y, double z) {
-      const double above = z - trend.dot(Eigen::Vector3d(1, x - x0, y - y0));
       const FieldSample sample{static_cast<float>(x), static_cast<float>(y), z};
-      if (above > highest) top = sample;
-      if (above < lowest) bottom = sample;
-      highest = std::max(highest, above);
-      lowest = std::min(lowest, above);
+      for (std::size_t k = 0; k < Trends::kCount; ++k) {
+        const double above_m = trends.above_m(k, x, y, z);
+        if (above_m > extremes[2 * k].by_m) extremes[2 * k] = {above_m, sample};
+        if (-above_m > extremes[2 * k + 1].by_m) extremes[2 * k + 1] = {-above_m, sample};
+      }
     });
-    if (highest >= lowest) result.push_back(top);
-    if (highest > lowest) result.push_back(bottom);
+    if (extremes[0].by_m == -INFINITY) return;
+    const auto first = static_cast<std::ptrdiff_t>(result.size());
+    for (const Extreme& extreme : extremes) {
+      const auto begin = result.begin() + first;
+      if (std::none_of(begin, result.end(),
+                       [&](const FieldSample& s) { return is_same(s, extreme.sample); })) {
+        result.push_back(extreme.sample);
+      }
+    }
   });
 }
 
@@ -133,23 +195,20 @@ std::vector<FieldSample> extremes_of_blocks(const TileSamples& samples, const Ti
   return result;
 }
 
-bool is_before(const FieldSample& a, const FieldSample& b) {
-  return std::pair(a.row, a.column) < std::pair(b.row, b.column);
-}
-
-bool is_same(const FieldSample& a, const FieldSample& b) {
-  return a.row == b.row && a.column == b.column;
-}
-
 }  // namespace
 
-Reference::Reference(const TileSamples& samples, const TileFrame& frame, double slack_cells) {
-  is_whole_ = samples.block_cells() == 1;
+Reference::Reference(const TileSamples& samples, const TileFrame& frame, double slack_cells,
+                     std::int64_t most_in_memory) {
+  const bool is_reduced = samples.block_cells() > 1;
+  const std::int64_t all = samples.window().columns * samples.window().rows;
+  is_whole_ = !is_reduced || (!samples.has_loose() && all <= most_in_memory);
   if (is_whole_ && !samples.has_loose()) {
     field_ = full_field(samples, frame);
   } else {
     field_ = {samples.window().columns, samples.window().rows, {}};
-    kept_ = is_whole_ ? all_samples(samples, frame) : extremes_of_blocks(samples, frame);
+  }
+  if (is_reduced || samples.has_loose()) {
+    kept_ = is_reduced ? extremes_of_blocks(samples, frame) : all_samples(samples, frame);
     constexpr std::int64_t kBlockOfLoose_cells = 2;
     field_.keep(std::max(samples.block_cells(), kBlockOfLoose_cells), kept_);
   }

@@ -10,15 +10,22 @@
 namespace terrane::tiler {
 
 /// What collapses are held against: every sample, loose ones too; or, where there are very many, of
-/// each block of the grid's the two that stick out most above and below the trend of the terrain
-/// around it, and what it was told to learn.
+/// each block of the grid's those that stick out most above and below the trend of the terrain
+/// around it, and above and below planes tilted against that; and what it was told to learn.
+/// If memory allows, a mesh near those is held against all others, too.
 ///
 /// The trend is a plane over TileSamples::kBlocksPerTrend blocks each way: over the block itself it
 /// would follow what is rough in it.
 class Reference {
  public:
-  /// \param slack_cells  see SampleField.
-  Reference(const TileSamples& samples, const TileFrame& frame, double slack_cells);
+  /// \param slack_cells     see SampleField.
+  /// \param most_in_memory  samples that stay behind those kept if the tile has no more, and no
+  ///                        loose ones; eight bytes each.
+  Reference(const TileSamples& samples, const TileFrame& frame, double slack_cells,
+            std::int64_t most_in_memory = kMostInMemory);
+
+  /// 160 MB.
+  static constexpr std::int64_t kMostInMemory = 20'000'000;
 
   /// Heights over the curved datum of the frame.
   const hierarchy::SampleField& field() const { return field_; }
@@ -27,7 +34,7 @@ class Reference {
   /// \return whether any of them was not held against already.
   bool learn(const std::vector<hierarchy::FieldSample>& samples);
 
-  /// Whether every sample is held against.
+  /// Whether every sample is held against in the end.
   bool is_whole() const { return is_whole_; }
 
  private:

@@ -31,7 +31,7 @@ class ReducedReference : public ::testing::Test {
   Lattice lattice_{std::vector<Eigen::Vector3d>{{0.01, 0.01, 0.01}}};
   TileFrame frame_{world_, lattice_, window_, 0};
   TileSamples samples_{dem_, window_, 0, 100};
-  Reference reference_{samples_, frame_, 1e-7};
+  Reference reference_{samples_, frame_, 1e-7, 0};
 
   bool holds(float column, float row) const {
     return std::ranges::any_of(reference_.field().kept, [&](const auto& sample) {
@@ -46,10 +46,10 @@ TEST_F(ReducedReference, KeepsWhatSticksOutMostOfItsBlock) {
   EXPECT_TRUE(holds(2001, 1500));
 }
 
-TEST_F(ReducedReference, KeepsTwoSamplesOfEachBlockAndNoMore) {
+TEST_F(ReducedReference, KeepsTenSamplesOfEachBlockAtMost) {
   const GridShape blocks = reference_.field().blocks();
   EXPECT_LE(reference_.field().kept.size(),
-            2 * static_cast<std::size_t>(blocks.columns * blocks.rows));
+            10 * static_cast<std::size_t>(blocks.columns * blocks.rows));
   EXPECT_GE(reference_.field().kept.size(), static_cast<std::size_t>(blocks.columns * blocks.rows));
 }
 
@@ -61,6 +61,16 @@ TEST_F(ReducedReference, LearnsASampleOnce) {
   EXPECT_TRUE(reference_.learn({fresh}));
   EXPECT_TRUE(holds(fresh.column, 0));
   EXPECT_FALSE(reference_.learn({fresh}));
+}
+
+TEST_F(ReducedReference, WhatItLeavesOutStaysBehindItIfMemoryAllows) {
+  const Reference backed(samples_, frame_, 1e-7);
+  EXPECT_FALSE(reference_.is_whole());
+  EXPECT_FALSE(reference_.field().is_backed());
+  ASSERT_TRUE(backed.field().is_backed());
+  EXPECT_TRUE(backed.is_whole());
+  EXPECT_EQ(backed.field().kept.size(), reference_.field().kept.size());
+  EXPECT_NEAR(backed.field().row(777)[1000], slope_with_spikes(1000, 777), 1e-3);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST(TileSamples, BlocksGrowUntilWhatIsKeptFitsButLeaveSixSamplesToATriangle) {
   const TileSamples coarse(dem, window, 0, 1000);
   const double samples = 67'108'864;
   const auto kept = [&](const TileSamples& s) {
-    return 2 * samples / static_cast<double>(s.block_cells() * s.block_cells());
+    return 10 * samples / static_cast<double>(s.block_cells() * s.block_cells());
   };
   EXPECT_LE(kept(coarse), 4.5e6);
   EXPECT_GT(4 * kept(coarse), 4.5e6);
