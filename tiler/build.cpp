@@ -16,11 +16,15 @@
 #include "tiler/gltf/tile_skirt.h"
 #include "tiler/gltf/write_glb.h"
 #include "tiler/level_rounds.h"
+#include "tiler/tile/height_cache.h"
 #include "tiler/tile/tile_frame.h"
 #include "tiler/tileset/write_tileset.h"
 
 namespace terrane::tiler {
 namespace {
+
+/// Heights that are kept for the next level: 440 MB.
+constexpr std::int64_t kMostCachedSamples = 110'000'000;
 
 /// Between a shore and a sample beside it the ground may be a wall, where what plan is rounded by
 /// becomes so much more in height; and lines are 1/128 cell apart at least (ingest/features.h),
@@ -90,10 +94,11 @@ class Build {
  public:
   Build(const HeightSource& heights, const Georeference& place, const HeightStatistics& statistics,
         const BuildOptions& options, const std::filesystem::path& out, Progress& progress)
-      : pyramid_(heights.shape(), options.tile_cells, options.levels_per_octave),
+      : heights_(heights, kMostCachedSamples),
+        pyramid_(heights.shape(), options.tile_cells, options.levels_per_octave),
         world_(place, heights.shape()),
         lattice_(pyramid_, world_, statistics, options.tolerance_m, steps_per_tolerance(options)),
-        source_{heights, world_, pyramid_, lattice_, options.effort},
+        source_{heights_, world_, pyramid_, lattice_, options.effort},
         is_mirrored_(is_mirrored(world_, heights.shape())),
         folder_(out),
         texture_(options.texture),
@@ -237,6 +242,7 @@ class Build {
     return result;
   }
 
+  HeightCache heights_;
   Pyramid pyramid_;
   WorldFrame world_;
   Lattice lattice_;

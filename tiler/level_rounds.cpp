@@ -1,9 +1,13 @@
 #include "tiler/level_rounds.h"
 
-#include <tbb/parallel_for_each.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <atomic>
 #include <filesystem>
+#include <functional>
+#include <system_error>
 
 #include "tiler/seams/build_seam.h"
 
@@ -18,20 +22,42 @@ void LevelRounds::build(int level, const std::string& name,
   for_each(seams, [&](const SeamId& seam) {
     if (!is_done(seam)) build_seam(seam);
   });
-  for_each(tiles, [&](const TileId& tile) {
+  for_each(longest_first(tiles), [&](const TileId& tile) {
     if (!is_done(tile)) build_tile(tile);
   });
   folder_.forget_seams(level);
 }
 
+std::vector<TileId> LevelRounds::longest_first(std::vector<TileId> tiles) const {
+  constexpr std::size_t kFew = 64;
+  if (tiles.size() > kFew) return tiles;
+  std::ranges::stable_sort(tiles, std::greater(),
+                           [&](const TileId& tile) { return input_bytes(tile); });
+  return tiles;
+}
+
+std::uintmax_t LevelRounds::input_bytes(const TileId& tile) const {
+  std::uintmax_t bytes = 0;
+  for (const TileId& child : source_.pyramid.children(tile)) {
+    std::error_code none;  // it may be done with
+    const std::uintmax_t size = std::filesystem::file_size(folder_.finished_tile(child), none);
+    if (!none) bytes += size;
+  }
+  return bytes;
+}
+
 template <class Item, class Work>
 void LevelRounds::for_each(const std::vector<Item>& items, const Work& work) const {
   tbb::task_arena arena(jobs_);
+  std::atomic<std::size_t> next = 0;
   arena.execute([&] {
-    tbb::parallel_for_each(items, [&](const Item& item) {
-      work(item);
-      progress_.advance(1);
-    });
+    tbb::parallel_for(
+        std::size_t{0}, items.size(),
+        [&](std::size_t) {
+          work(items[next++]);
+          progress_.advance(1);
+        },
+        tbb::simple_partitioner());
   });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -51,9 +52,15 @@ class LevelRounds {
             const std::vector<TileId>& children) const;
 
  private:
+  /// Few tiles in an order in which threads end together; many as they are, as neighbours read the
+  /// same heights.
+  std::vector<TileId> longest_first(std::vector<TileId> tiles) const;
+  std::uintmax_t input_bytes(const TileId& tile) const;
+
   bool is_done(const SeamId& seam) const;
   bool is_done(const TileId& tile) const;
   void build_seam(const SeamId& seam) const;
+  /// Takes the items one after the other, whichever thread is free.
   template <class Item, class Work>
   void for_each(const std::vector<Item>& items, const Work& work) const;
 

@@ -114,7 +114,21 @@ TEST(Build, ALadderOfThreeLevelsPerOctaveDoublesWithEveryThird) {
   }
 }
 
-/// Stops a build after a number of reads, as if it had been killed there.
+/// Fails after a number of seams and tiles.
+class BreakingProgress final : public Progress {
+ public:
+  explicit BreakingProgress(int steps) : steps_left_(steps) {}
+  void begin(std::string_view, std::int64_t) override {}
+  void advance(std::int64_t) override {
+    if (--steps_left_ < 0) throw InputError("the cable was pulled");
+  }
+  void note(std::string_view) override {}
+
+ private:
+  std::atomic<int> steps_left_;
+};
+
+/// Stops a build after a number of seams and tiles, as if it had been killed there.
 class StoppedBuild : public ::testing::TestWithParam<int> {};
 
 TEST_P(StoppedBuild, GoesOnToTheSameBytes) {
@@ -122,14 +136,9 @@ TEST_P(StoppedBuild, GoesOnToTheSameBytes) {
   const TemporaryFolder whole, stopped;
   build_hills(whole.path(), options);
 
-  std::atomic<int> samples_left = GetParam() * 300;
-  const FunctionDem breaking({60, 45}, [&](auto column, auto row) {
-    if (--samples_left < 0) throw InputError("the cable was pulled");
-    return hills(column, row);
-  });
-  const HeightStatistics statistics = FunctionDem({60, 45}, hills).statistics();
-  NoProgress progress;
-  EXPECT_THROW(build(breaking, PlainPlace(), statistics, options, stopped.path(), progress),
+  const FunctionDem dem({60, 45}, hills);
+  BreakingProgress progress(GetParam());
+  EXPECT_THROW(build(dem, PlainPlace(), dem.statistics(), options, stopped.path(), progress),
                InputError);
   EXPECT_FALSE(std::filesystem::exists(stopped.path() / "terrane.json"));
 
@@ -137,7 +146,8 @@ TEST_P(StoppedBuild, GoesOnToTheSameBytes) {
   EXPECT_EQ(bytes_below(stopped.path()), bytes_below(whole.path()));
 }
 
-INSTANTIATE_TEST_SUITE_P(AfterReads, StoppedBuild, ::testing::Values(0, 2, 7, 12, 17, 22, 27));
+INSTANTIATE_TEST_SUITE_P(AfterSteps, StoppedBuild,
+                         ::testing::Values(0, 5, 16, 17, 23, 28, 29, 31, 33, 35, 37));
 
 TEST(Build, RefusesSettingsOutOfRange) {
   EXPECT_THROW(check({.tolerance_m = -1}), ConfigError);
