@@ -93,7 +93,7 @@ class SeamBuild {
         strip_(std::move(strip)),
         samples_(source.heights, window, 0, strip_.triangles.size(), source.loose),
         frame_(source.world, source.lattice, window, seam.first.level),
-        reference_(samples_, frame_, step_m() / frame_.spacing_m()) {
+        reference_(samples_, frame_, step_m() / frame_.spacing_m(), kMostBehind) {
     place_vertices();
     list_chain();
   }
@@ -141,6 +141,8 @@ class SeamBuild {
   // as measured over the strip; over a tile the frame may be off by a little more
   static constexpr double kLargestShare = 0.99;
   static constexpr double kLargestBend_cells = 0.4;
+  // chains know the samples that are kept alone
+  static constexpr std::int64_t kMostBehind = 0;
 
   double step_m() const { return source_.lattice.step_m(seam_.first.level).x(); }
 
