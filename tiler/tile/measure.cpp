@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,6 +10,7 @@
 
 #include "hierarchy/collapse/sample_field.h"
 #include "hierarchy/collapse/within_task.h"
+#include "tiler/tile/inner_columns.h"
 #include "tiler/tile/plane_along_row.h"
 
 namespace terrane::tiler {
@@ -53,57 +53,6 @@ FieldSample field_sample(const LooseSample& loose, const TileFrame& frame) {
   return {static_cast<float>(loose.column), static_cast<float>(loose.row),
           loose.height_m - frame.drop_m(loose.column, loose.row)};
 }
-
-/// The columns of each row that lie in a triangle over the grid, away from its sides.
-class InnerColumns {
- public:
-  InnerColumns(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c, double margin_cells) {
-    const FieldPoint* corners[] = {&a, &b, &c, &a};
-    const double turn = doubled_area(a, b, c) > 0 ? 1 : -1;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const FieldPoint &p = *corners[k], &q = *corners[k + 1];
-      const double along = turn * (q.column - p.column), down = turn * (q.row - p.row);
-      const double margin = margin_cells * std::hypot(along, down);
-      // inside: down * (column - p.column) - along * (row - p.row) >= margin
-      if (down == 0) {
-        const double inwards = along > 0 ? -1 : 1;
-        top_ = inwards > 0 ? std::max(top_, p.row + margin_cells) : top_;
-        bottom_ = inwards < 0 ? std::min(bottom_, p.row - margin_cells) : bottom_;
-        continue;
-      }
-      const Side side{p.column + (margin - along * p.row) / down, along / down};
-      (down > 0 ? left_[lefts_++] : right_[rights_++]) = side;
-    }
-  }
-
-  /// First and last; empty if the first is greater.
-  std::pair<std::int64_t, std::int64_t> of_row(std::int64_t row, std::int64_t first,
-                                               std::int64_t last) const {
-    const auto at = static_cast<double>(row);
-    if (at < top_ || at > bottom_) return {last + 1, last};
-    auto left = static_cast<double>(first), right = static_cast<double>(last);
-    for (std::size_t k = 0; k < lefts_; ++k) left = std::max(left, left_[k].column(at));
-    for (std::size_t k = 0; k < rights_; ++k) right = std::min(right, right_[k].column(at));
-    if (!(left <= right)) return {last + 1, last};
-    return {static_cast<std::int64_t>(std::ceil(left)),
-            static_cast<std::int64_t>(std::floor(right))};
-  }
-
- private:
-  struct Side {
-    double at_row_0, per_row;
-    double column(double row) const { return at_row_0 + per_row * row; }
-  };
-
-  static double doubled_area(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c) {
-    return (b.row - a.row) * (c.column - a.column) - (b.column - a.column) * (c.row - a.row);
-  }
-
-  std::array<Side, 3> left_, right_;
-  std::size_t lefts_ = 0, rights_ = 0;
-  double top_ = -std::numeric_limits<double>::infinity();
-  double bottom_ = std::numeric_limits<double>::infinity();
-};
 
 /// The samples of a patch, and where they stand in the world.
 class Patch {
