@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -35,10 +36,11 @@ using WaterRows = std::map<std::int64_t, std::vector<WaterSpan>>;
 
 /// Everything that a user wants kept on one DEM.
 struct GridFeatures {
-  std::vector<FeatureLine> lines;
+  std::vector<FeatureLine> lines;  ///< those of shores first, body of water by body of water
   WaterRows water;
-  double column_m = 1;      ///< largest distance of two samples of a row, in metres
-  double row_m = 1;         ///< largest distance of two samples of a column, in metres
+  std::vector<std::size_t> shores;  ///< of each body of water: how many of the lines are its shores
+  double column_m = 1;              ///< largest distance of two samples of a row, in metres
+  double row_m = 1;                 ///< largest distance of two samples of a column, in metres
   double off_plan_m = 0;    ///< at most this far are the lines from where their files have them
   std::string fingerprint;  ///< of lines and water; empty if there are none
 };

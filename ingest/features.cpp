@@ -153,6 +153,7 @@ std::string fingerprint_of(const GridFeatures& features) {
     }
     fingerprint.add(line.height_m.value_or(NAN));
   }
+  for (const std::size_t shores : features.shores) fingerprint.add(std::uint64_t{shores});
   for (const auto& [row, spans] : features.water) {
     for (const WaterSpan& span : spans) {
       for (const std::int64_t number : {row, span.first, span.last}) {
@@ -196,6 +197,7 @@ GridFeatures read_features(Dem& dem, const FeatureOptions& options, Progress& pr
   std::vector<FeatureLine> shores;
   for (const WaterBody& body : bodies) {
     for (const auto& shore : body.shores) shores.push_back({shore, body.height_m});
+    features.shores.push_back(body.shores.size());
   }
   features.lines.insert(features.lines.begin(), shores.begin(), shores.end());
   features.water = water_rows(bodies, shape);

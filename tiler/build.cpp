@@ -90,6 +90,11 @@ int jobs_of(const BuildOptions& options) {
                           : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 
+/// Of the two ways along a vertical, that which leads up.
+Eigen::Vector3d upright(const Eigen::Vector3d& vertical) {
+  return vertical.z() > 0 ? vertical : Eigen::Vector3d(-vertical);
+}
+
 class Build {
  public:
   Build(const HeightSource& heights, const Georeference& place, const HeightStatistics& statistics,
@@ -183,6 +188,7 @@ class Build {
                     .targets = targets,
                     .skirt = skirt,
                     .step_m = lattice_.step_m(tile.level),
+                    .up = upright(record.box.axes.col(2)),
                     .is_mirrored = is_mirrored_,
                     .tolerance_m = data_set_.tolerance_m[tile.level],
                     .max_error_m = record.error.max_m,
@@ -202,7 +208,7 @@ class Build {
     // neighbours two levels apart are at most five tolerances of the finer one apart
     const double auto_m = 5 * data_set_.tolerance_m[tile.level];
     const double depth_m = *data_set_.format.skirt_m > 0 ? *data_set_.format.skirt_m : auto_m;
-    const Eigen::Vector3d down = (vertical.z() > 0 ? -depth_m : depth_m) * vertical;
+    const Eigen::Vector3d down = -depth_m * upright(vertical);
     return hang_skirt(pyramid_, tile, mesh, targets,
                       down.cwiseQuotient(lattice_.step_m(tile.level)));
   }

@@ -193,7 +193,10 @@ class TileBuild {
   }
 
   TileMesh written_mesh(const TerrainMesh& terrain, const MeasuredError& error) const {
-    TileMesh mesh{.triangles = terrain.triangles, .lines = terrain.lines, .error = error};
+    TileMesh mesh{.triangles = terrain.triangles,
+                  .in_water = terrain.in_water,
+                  .lines = terrain.lines,
+                  .error = error};
     std::vector<Place> places;
     for (const TerrainVertex& vertex : terrain.vertices) {
       mesh.points.push_back(vertex.place.lattice);
@@ -339,7 +342,7 @@ class SeamVertices {
 /// Takes the vertices out of a tile that its seams leave out: as their triangles' corners become
 /// others, those that lose one vanish.
 FinerLevel leave_out(const std::vector<BorderPlace>& borders, const std::vector<SeamChain>& seams,
-                     std::vector<Corners>& triangles) {
+                     std::vector<Corners>& triangles, std::vector<std::uint8_t>& in_water) {
   const SeamVertices seam_vertices(borders, seams);
   FinerLevel finer{.places = {}, .triangles = triangles, .target = {}};
   for (std::uint32_t v = 0; v < borders.size(); ++v) finer.target.push_back(v);
@@ -353,9 +356,47 @@ FinerLevel leave_out(const std::vector<BorderPlace>& borders, const std::vector<
   for (Corners& corners : triangles) {
     for (std::uint32_t& v : corners) v = finer.target[v];
   }
-  std::erase_if(triangles,
-                [](const Corners& c) { return c[0] == c[1] || c[1] == c[2] || c[2] == c[0]; });
+  const auto is_nothing = [](const Corners& c) {
+    return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
+  };
+  std::size_t left = 0;
+  for (std::size_t t = 0; t < in_water.size(); ++t) {
+    if (!is_nothing(triangles[t])) in_water[left++] = in_water[t];
+  }
+  in_water.resize(left);
+  std::erase_if(triangles, is_nothing);
   return finer;
+}
+
+/// Tells for each triangle of a full-resolution mesh whether it lies in water; empty if none does.
+std::vector<std::uint8_t> triangles_in_water(const TileSource& source, const TileId& tile,
+                                             const hierarchy::LinedTriangles& full,
+                                             const std::vector<BorderPlace>& places) {
+  if (source.features == nullptr) return {};
+  const TileFeatures& features = *source.features;
+  std::set<std::pair<double, double>> on_line;
+  for (const FeatureLine& line : features.lines_of(tile)) {
+    for (const GridPosition& p : line.points) on_line.emplace(p.column, p.row);
+  }
+  std::vector<std::uint8_t> in_water;
+  for (const Corners& corners : full.triangles) {
+    // a triangle that no line touches is where its samples are
+    const auto off_line = std::ranges::find_if(corners, [&](std::uint32_t v) {
+      return v < full.samples.size() && !on_line.contains({places[v].column, places[v].row});
+    });
+    if (off_line != corners.end()) {
+      in_water.push_back(std::isnan(features.water_m(full.samples[*off_line])) ? 0 : 1);
+      continue;
+    }
+    GridPosition middle{0, 0};
+    for (const std::uint32_t v : corners) {
+      middle.column += places[v].column / 3;
+      middle.row += places[v].row / 3;
+    }
+    in_water.push_back(features.water().hold(middle) ? 1 : 0);
+  }
+  if (std::ranges::count(in_water, 1) == 0) in_water.clear();
+  return in_water;
 }
 
 /// Lines were laid so that rounding turns none of their triangles over: see ingest/features.h.
@@ -390,8 +431,9 @@ BuiltTile build_leaf(const TileSource& source, const TileId& tile,
 
   const std::vector<BorderPlace> places = places_of(full, samples.window());
   const std::vector<bool> boundary = hierarchy::boundary_vertices(places.size(), full.triangles);
-  const FinerLevel finer = leave_out(places, seams, full.triangles);
-  TerrainMesh mesh{{}, std::move(full.triangles), std::move(full.edges)};
+  std::vector<std::uint8_t> in_water = triangles_in_water(source, tile, full, places);
+  const FinerLevel finer = leave_out(places, seams, full.triangles, in_water);
+  TerrainMesh mesh{{}, std::move(full.triangles), std::move(full.edges), std::move(in_water)};
   for (const SampleId& sample : full.samples) {
     mesh.vertices.push_back({.place = build.place_inner_sample(sample)});
     if (source.features != nullptr) {
@@ -421,8 +463,9 @@ BuiltTile build_parent(const TileSource& source, const TileId& tile,
   TileBuild build(source, tile, joined.triangles.size());
   const std::vector<bool> boundary =
       hierarchy::boundary_vertices(joined.points.size(), joined.triangles);
-  FinerLevel finer = leave_out(joined.borders, seams, joined.triangles);
-  TerrainMesh mesh{{}, std::move(joined.triangles), std::move(joined.lines)};
+  FinerLevel finer = leave_out(joined.borders, seams, joined.triangles, joined.in_water);
+  TerrainMesh mesh{
+      {}, std::move(joined.triangles), std::move(joined.lines), std::move(joined.in_water)};
   for (std::uint32_t v = 0; v < joined.points.size(); ++v) {
     finer.places.push_back(build.frame().place_of_finer(joined.points[v]));
     mesh.vertices.push_back({.place = build.frame().place_of(finer.places.back().lattice)});

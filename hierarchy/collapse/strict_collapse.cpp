@@ -59,7 +59,8 @@ class StrictCollapse {
  public:
   StrictCollapse(const TerrainMesh& input, const SampleField& field, const Placer& placer,
                  const FinerLevel& finer, const StrictOptions& options)
-      : mesh_(static_cast<std::uint32_t>(input.vertices.size()), input.triangles),
+      : input_(input),
+        mesh_(static_cast<std::uint32_t>(input.vertices.size()), input.triangles),
         vertices_(split_like(mesh_, input.vertices)),
         walker_(mesh_),
         placer_(placer),
@@ -488,6 +489,7 @@ class StrictCollapse {
     for (Corners& corners : result_.mesh.triangles) {
       for (std::uint32_t& v : corners) v = number[v];
     }
+    keep_water();
     if (lines_) result_.mesh.lines = lines_->edges();
     for (LineEdge& edge : result_.mesh.lines) {
       for (std::uint32_t& v : edge) v = number[v];
@@ -500,6 +502,15 @@ class StrictCollapse {
     return std::move(result_);
   }
 
+  /// Shores stay edges and nothing goes across them, so a triangle that is left lies where it lay.
+  void keep_water() {
+    if (input_.in_water.empty()) return;
+    for (std::uint32_t t = 0; t < input_.triangles.size(); ++t) {
+      if (mesh_.is_live(TriangleId{t})) result_.mesh.in_water.push_back(input_.in_water[t]);
+    }
+  }
+
+  const TerrainMesh& input_;
   HalfedgeMesh mesh_;
   std::vector<TerrainVertex> vertices_;
   StencilWalker walker_;

@@ -53,7 +53,7 @@ struct StrictResult {
 /// that replaces the stencil, at its written (rounded) places, is within the tolerance of every
 /// sample that it covers, is nowhere folded in plan, keeps lines in place (boundary_rule.h) and, if
 /// there is a finer level, lets it blend soundly (morph_guard.h). A vertex in water stays at the
-/// water's height.
+/// water's height, a triangle in water stays in water.
 ///
 /// Guarantees: samples that \p input covers within the tolerance stay so; outline and locked
 /// vertices that remain have not moved; the result depends on nothing but the arguments.

@@ -39,6 +39,7 @@ struct TerrainMesh {
   std::vector<TerrainVertex> vertices;
   std::vector<Corners> triangles;  ///< counter-clockwise in GridPoint's plane
   std::vector<LineEdge> lines;     ///< edges that stay edges; their ends are kFeature or kLocked
+  std::vector<std::uint8_t> in_water = {};  ///< of each triangle, 1 or 0; empty: all are on land
 };
 
 /// Rounds places to the written lattice.

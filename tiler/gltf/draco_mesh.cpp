@@ -62,21 +62,19 @@ GlbValues as_floats(const GlbValues& values) {
 
 class Encoding {
  public:
-  explicit Encoding(const GlbArrays& arrays) {
-    const std::size_t count = arrays.positions.count;
-    mesh_.set_num_points(static_cast<std::uint32_t>(count));
-    mesh_.SetNumFaces(arrays.indices.size() / 3);
+  Encoding(const GlbArrays& arrays, bool is_water) {
+    const std::vector<std::uint32_t>& indices = is_water ? arrays.water : arrays.land;
+    mesh_.set_num_points(static_cast<std::uint32_t>(arrays.vertices()));
+    mesh_.SetNumFaces(indices.size() / 3);
     for (std::uint32_t f = 0; f < mesh_.num_faces(); ++f) {
-      const auto corner = [&](std::uint32_t k) {
-        return draco::PointIndex(arrays.indices[3 * f + k]);
-      };
+      const auto corner = [&](std::uint32_t k) { return draco::PointIndex(indices[3 * f + k]); };
       mesh_.SetFace(draco::FaceIndex(f), {corner(0), corner(1), corner(2)});
     }
     add("POSITION", arrays.positions, GeometryAttribute::POSITION);
-    add("NORMAL", as_floats(arrays.normals), GeometryAttribute::NORMAL);
+    add("NORMAL", as_floats(is_water ? arrays.upright : arrays.normals), GeometryAttribute::NORMAL);
     add("_MORPH", arrays.morphs, GeometryAttribute::GENERIC);
     if (arrays.places) add("TEXCOORD_0", as_floats(*arrays.places), GeometryAttribute::TEX_COORD);
-    if (arrays.colours) add("COLOR_0", *arrays.colours, GeometryAttribute::COLOR);
+    if (arrays.colours && !is_water) add("COLOR_0", *arrays.colours, GeometryAttribute::COLOR);
   }
 
   DracoMesh encode() {
@@ -140,6 +138,8 @@ class Encoding {
 
 }  // namespace
 
-DracoMesh encode_draco(const GlbArrays& arrays) { return Encoding(arrays).encode(); }
+DracoMesh encode_draco(const GlbArrays& arrays, bool is_water) {
+  return Encoding(arrays, is_water).encode();
+}
 
 }  // namespace terrane::tiler

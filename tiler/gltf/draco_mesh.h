@@ -17,10 +17,11 @@ struct DracoMesh {
   std::vector<std::pair<std::string, GlbValues>> attributes;
 };
 
-/// Compresses a primitive. Positions and displacements come out to the bit as they went in; normals
-/// and texture coordinates as floats, rounded to 8 and 14 bits.
+/// Compresses the triangles on land, or those in water. Positions and displacements come out to the
+/// bit as they went in; normals and texture coordinates as floats, rounded to 8 and 14 bits.
 ///
+/// \pre there are some, and they use every vertex.
 /// \throws OutputError if Draco cannot encode it.
-DracoMesh encode_draco(const GlbArrays& arrays);
+DracoMesh encode_draco(const GlbArrays& arrays, bool is_water);
 
 }  // namespace terrane::tiler

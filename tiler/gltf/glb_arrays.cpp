@@ -19,7 +19,8 @@ struct Part {
   std::span<const LatticePoint> points;
   std::span<const LatticePoint> targets;
   std::span<const std::uint32_t> vertices;  ///< of the tile: has their normals and grounds
-  const std::vector<hierarchy::Corners>& triangles;
+  std::span<const hierarchy::Corners> triangles;
+  std::span<const std::uint8_t> in_water;  ///< of each triangle; may be empty
 };
 
 // the filter's mantissas have 24 bits, and floats hold every integer of that size
@@ -46,10 +47,11 @@ Eigen::Vector3f stored_normal(const Eigen::Vector3f& normal, const Eigen::Vector
   return Eigen::Vector3d(n.x(), n.z(), -n.y()).cast<float>();
 }
 
-std::vector<std::uint32_t> cached_indices(const Part& part, bool is_mirrored) {
+std::vector<std::uint32_t> cached_indices(const Part& part, bool is_water, bool is_mirrored) {
   std::vector<std::uint32_t> indices;
-  indices.reserve(part.triangles.size() * 3);
-  for (auto [a, b, c] : part.triangles) {
+  for (std::size_t t = 0; t < part.triangles.size(); ++t) {
+    if ((!part.in_water.empty() && part.in_water[t] != 0) != is_water) continue;
+    auto [a, b, c] = part.triangles[t];
     if (is_mirrored) std::swap(b, c);
     indices.insert(indices.end(), {a, b, c});
   }
@@ -59,12 +61,18 @@ std::vector<std::uint32_t> cached_indices(const Part& part, bool is_mirrored) {
   return indices;
 }
 
-GlbArrays arrange(const GlbTile& tile, const TileFormat& format, const Part& part) {
-  GlbArrays arrays{.indices = cached_indices(part, tile.is_mirrored)};
+GlbArrays arrange(const GlbTile& tile, const TileFormat& format, const Part& part, Cover cover) {
+  GlbArrays arrays;
+  if (cover != Cover::kWater) arrays.land = cached_indices(part, false, tile.is_mirrored);
+  if (cover != Cover::kLand) arrays.water = cached_indices(part, true, tile.is_mirrored);
+  std::vector<std::uint32_t> all(arrays.land);
+  all.insert(all.end(), arrays.water.begin(), arrays.water.end());
+  if (all.empty()) return arrays;
   std::vector<std::uint32_t> remap(part.points.size());
-  const std::size_t count = meshopt_optimizeVertexFetchRemap(
-      remap.data(), arrays.indices.data(), arrays.indices.size(), part.points.size());
-  for (std::uint32_t& i : arrays.indices) i = remap[i];
+  const std::size_t count =
+      meshopt_optimizeVertexFetchRemap(remap.data(), all.data(), all.size(), part.points.size());
+  for (std::uint32_t& i : arrays.land) i = remap[i];
+  for (std::uint32_t& i : arrays.water) i = remap[i];
 
   const bool is_scaled = format.positions == Positions::kLattice;
   const Eigen::Vector3d scale = is_scaled ? tile.step_m : Eigen::Vector3d::Ones();
@@ -89,6 +97,10 @@ GlbArrays arrange(const GlbTile& tile, const TileFormat& format, const Part& par
   arrays.positions = values_of_steps(positions, format.positions, step_m);
   arrays.morphs = values_of_steps(morphs, format.positions, step_m);
   arrays.normals = values_of_normals(normals, !is_scaled);
+  if (!arrays.water.empty()) {
+    normals.assign(count, stored_normal(tile.up.cast<float>(), scale));
+    arrays.upright = values_of_normals(normals, !is_scaled);
+  }
   if (!places.empty()) arrays.places = values_of_places(places, !is_scaled);
   if (!colours.empty()) arrays.colours = values_of_colours(colours);
   return arrays;
@@ -105,15 +117,19 @@ LatticePoint origin_of(const TileMesh& mesh) {
   return {(low.i + high.i) / 2, (low.j + high.j) / 2, (low.k + high.k) / 2};
 }
 
-GlbArrays arrange_surface(const GlbTile& tile, const TileFormat& format) {
-  std::vector<std::uint32_t> all(tile.mesh.points.size());
+GlbArrays arrange_surface(const GlbTile& tile, const TileFormat& format, Cover cover) {
+  const TileMesh& mesh = tile.mesh;
+  std::vector<std::uint32_t> all(mesh.points.size());
   std::iota(all.begin(), all.end(), 0);
-  return arrange(tile, format, {tile.mesh.points, tile.targets, all, tile.mesh.triangles});
+  return arrange(tile, format, {mesh.points, tile.targets, all, mesh.triangles, mesh.in_water},
+                 cover);
 }
 
-GlbArrays arrange_skirt(const GlbTile& tile, const TileFormat& format) {
+GlbArrays arrange_skirt(const GlbTile& tile, const TileFormat& format, Cover cover) {
   const TileSkirt& skirt = tile.skirt;
-  return arrange(tile, format, {skirt.points, skirt.targets, skirt.above, skirt.triangles});
+  return arrange(tile, format,
+                 {skirt.points, skirt.targets, skirt.above, skirt.triangles, skirt.in_water},
+                 cover);
 }
 
 }  // namespace terrane::tiler

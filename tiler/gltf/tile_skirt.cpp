@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
 #include <utility>
 
 namespace terrane::tiler {
@@ -12,13 +11,13 @@ namespace {
 using hierarchy::BorderPlace;
 using Edge = std::array<std::uint32_t, 2>;
 
-/// Edges with a triangle on one side only, that one to their left, in order.
-std::set<Edge> open_edges(const TileMesh& mesh) {
-  std::set<Edge> open;
-  for (const hierarchy::Corners& corners : mesh.triangles) {
+/// Edges with a triangle on one side only, that one to their left, in order; and that triangle.
+std::map<Edge, std::size_t> open_edges(const TileMesh& mesh) {
+  std::map<Edge, std::size_t> open;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
-      const std::uint32_t from = corners[k], to = corners[(k + 1) % 3];
-      if (open.erase({to, from}) == 0) open.insert({from, to});
+      const std::uint32_t from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
+      if (open.erase({to, from}) == 0) open.emplace(Edge{from, to}, t);
     }
   }
   return open;
@@ -52,11 +51,14 @@ TileSkirt hang_skirt(const Pyramid& pyramid, const TileId& tile, const TileMesh&
     }
     return at->second;
   };
-  for (const auto& [from, to] : open_edges(mesh)) {
+  for (const auto& [edge, triangle] : open_edges(mesh)) {
+    const auto& [from, to] = edge;
     if (!is_along_seam(pyramid, tile, mesh.borders[from], mesh.borders[to])) continue;
     const std::uint32_t a = number(from), b = number(to);
     skirt.triangles.push_back({a, a + 1, b + 1});
     skirt.triangles.push_back({a, b + 1, b});
+    if (!mesh.in_water.empty())
+      skirt.in_water.insert(skirt.in_water.end(), 2, mesh.in_water[triangle]);
   }
   return skirt;
 }

@@ -17,6 +17,7 @@ struct TileSkirt {
   std::vector<LatticePoint> points;           ///< of the tile's border, and below them
   std::vector<LatticePoint> targets;          ///< at t = 1
   std::vector<hierarchy::Corners> triangles;  ///< turned outward
+  std::vector<std::uint8_t> in_water;         ///< of each triangle; empty: none hangs from water
 };
 
 /// \param targets     of the tile's vertices at t = 1.

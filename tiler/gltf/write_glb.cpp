@@ -1,6 +1,7 @@
 #include "tiler/gltf/write_glb.h"
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "tiler/gltf/draco_mesh.h"
 #include "tiler/gltf/glb_arrays.h"
@@ -48,14 +49,11 @@ class Document {
   std::string encode() {
     const bool is_scaled = format_.positions == Positions::kLattice;
     ordered_json mesh;
-    mesh["primitives"].push_back(primitive(arrange_surface(tile_, format_)));
-    if (!tile_.skirt.triangles.empty()) {
-      mesh["primitives"].push_back(primitive(arrange_skirt(tile_, format_)));
-      mesh["primitives"][1]["extras"]["terrane"]["skirt"] = true;
-    }
+    mesh["primitives"] = ordered_json::array();
+    add_primitives(arrange_surface, mesh["primitives"], "");
+    if (!tile_.skirt.triangles.empty()) add_primitives(arrange_skirt, mesh["primitives"], "skirt");
     if (has_targets()) mesh["weights"] = {0};
     mesh["extras"] = describe(tile_, origin_);
-    const ordered_json material = make_material();  // puts the texture into the buffer
 
     ordered_json json;
     json["asset"] = {{"version", "2.0"}, {"generator", TERRANE_GENERATOR}};
@@ -65,7 +63,7 @@ class Document {
     json["scenes"] = {{{"nodes", {0}}}};
     json["nodes"] = {node_at(origin_, tile_.step_m, is_scaled)};
     json["meshes"] = {mesh};
-    json["materials"] = {material};
+    json["materials"] = materials_;
     if (tile_.texture.is_there()) add_texture(json);
     json["accessors"] = buffers_.accessors();
     json["bufferViews"] = buffers_.views();
@@ -76,23 +74,53 @@ class Document {
  private:
   bool has_targets() const { return format_.compression != Compression::kDraco; }
 
-  ordered_json primitive(const GlbArrays& arrays) {
-    ordered_json primitive;
+  using Arrange = GlbArrays (*)(const GlbTile&, const TileFormat&, Cover);
+
+  /// Those on land, then those in water.
+  /// \param mark  what extras say that they are; empty: nothing.
+  void add_primitives(Arrange arrange, ordered_json& list, const char* mark) {
+    const auto add = [&](ordered_json primitive, bool is_water) {
+      primitive["material"] = material(is_water);
+      if (*mark != 0) primitive["extras"]["terrane"][mark] = true;
+      list.push_back(std::move(primitive));
+    };
     if (format_.compression == Compression::kDraco) {
-      primitive = draco_primitive(encode_draco(arrays), arrays.indices.size());
-    } else {
-      ordered_json attributes;
-      const auto [position, morph] = buffers_.add_vertices(arrays.positions, arrays.morphs);
-      attributes["POSITION"] = position;
-      attributes["NORMAL"] = buffers_.add_vertices(arrays.normals);
-      attributes["_MORPH"] = morph;
-      if (arrays.places) attributes["TEXCOORD_0"] = buffers_.add_vertices(*arrays.places);
-      if (arrays.colours) attributes["COLOR_0"] = buffers_.add_vertices(*arrays.colours);
-      primitive["attributes"] = attributes;
-      primitive["targets"] = {{{"POSITION", attributes["_MORPH"]}}};
-      primitive["indices"] = buffers_.add_triangles(arrays.indices, arrays.positions.count);
+      for (const bool is_water : {false, true}) {
+        const GlbArrays arrays = arrange(tile_, format_, is_water ? Cover::kWater : Cover::kLand);
+        const std::size_t indices = (is_water ? arrays.water : arrays.land).size();
+        if (indices == 0) continue;
+        add(draco_primitive(encode_draco(arrays, is_water), indices), is_water);
+      }
+      return;
     }
-    primitive["material"] = 0;
+    const GlbArrays arrays = arrange(tile_, format_, Cover::kAll);
+    ordered_json attributes = stored_attributes(arrays);
+    if (!arrays.land.empty()) add(primitive(attributes, arrays.land, arrays.vertices()), false);
+    if (arrays.water.empty()) return;
+    attributes["NORMAL"] = buffers_.add_vertices(arrays.upright);
+    attributes.erase("COLOR_0");
+    add(primitive(attributes, arrays.water, arrays.vertices()), true);
+  }
+
+  ordered_json stored_attributes(const GlbArrays& arrays) {
+    ordered_json attributes;
+    const auto [position, morph] = buffers_.add_vertices(arrays.positions, arrays.morphs);
+    attributes["POSITION"] = position;
+    if (!arrays.land.empty()) attributes["NORMAL"] = buffers_.add_vertices(arrays.normals);
+    attributes["_MORPH"] = morph;
+    if (arrays.places) attributes["TEXCOORD_0"] = buffers_.add_vertices(*arrays.places);
+    if (arrays.colours && !arrays.land.empty()) {
+      attributes["COLOR_0"] = buffers_.add_vertices(*arrays.colours);
+    }
+    return attributes;
+  }
+
+  ordered_json primitive(const ordered_json& attributes, const std::vector<std::uint32_t>& indices,
+                         std::size_t vertices) {
+    ordered_json primitive;
+    primitive["attributes"] = attributes;
+    primitive["targets"] = {{{"POSITION", attributes["_MORPH"]}}};
+    primitive["indices"] = buffers_.add_triangles(indices, vertices);
     return primitive;
   }
 
@@ -111,17 +139,43 @@ class Document {
     return primitive;
   }
 
-  ordered_json make_material() {
+  /// The number of a material, which is made when it is first used.
+  std::size_t material(bool is_water) {
+    std::optional<std::size_t>& number = is_water ? water_ : land_;
+    if (!number) {
+      number = materials_.size();
+      materials_.push_back(is_water ? water_material() : land_material());
+    }
+    return *number;
+  }
+
+  ordered_json land_material() const {
     ordered_json material;
     ordered_json& surface = material["pbrMetallicRoughness"];
     const bool has_colours = tile_.texture.is_there() || format_.colour != Colour::kNone;
     if (!has_colours) surface["baseColorFactor"] = {0.62, 0.6, 0.55, 1};
+    finish(material);  // what is left out is as wanted: 1 is its roughness
+    return material;
+  }
+
+  ordered_json water_material() const {
+    constexpr double kRoughness = 0.25;
+    ordered_json material;
+    material["name"] = "water";
+    ordered_json& surface = material["pbrMetallicRoughness"];
+    if (!tile_.texture.is_there()) surface["baseColorFactor"] = {0.03, 0.12, 0.22, 1};
+    finish(material);
+    surface["roughnessFactor"] = kRoughness;
+    return material;
+  }
+
+  void finish(ordered_json& material) const {
+    ordered_json& surface = material["pbrMetallicRoughness"];
     if (tile_.texture.is_there()) surface["baseColorTexture"]["index"] = 0;
-    surface["metallicFactor"] = 0;  // what is left out is as wanted: 1 is its roughness
+    surface["metallicFactor"] = 0;
     if (format_.material == Material::kUnlit) {
       material["extensions"]["KHR_materials_unlit"] = ordered_json::object();
     }
-    return material;
   }
 
   bool is_webp() const { return tile_.texture.media_type == "image/webp"; }
@@ -159,6 +213,8 @@ class Document {
   const TileFormat& format_;
   GlbBuffers buffers_;
   LatticePoint origin_;
+  ordered_json materials_ = ordered_json::array();
+  std::optional<std::size_t> land_, water_;
 };
 
 }  // namespace

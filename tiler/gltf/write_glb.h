@@ -20,6 +20,7 @@ struct GlbTile {
   std::span<const LatticePoint> targets;  ///< of each vertex at t = 1, in steps of its own level
   TileSkirt skirt;                        ///< may be empty
   Eigen::Vector3d step_m;                 ///< east, north, up steps of the tile's level
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< upright in its middle
   bool is_mirrored = false;  ///< the grid runs clockwise in the world: triangles are turned
   double tolerance_m = 0;
   double max_error_m = 0;    ///< at least its children's

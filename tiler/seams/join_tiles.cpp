@@ -26,11 +26,16 @@ JoinedTiles join(const std::vector<TileMesh>& tiles) {
     for (const auto& [a, b, c] : tile.triangles) {
       joined.triangles.push_back({number[a], number[b], number[c]});
     }
+    if (!tile.in_water.empty()) {
+      joined.in_water.resize(joined.triangles.size() - tile.triangles.size());
+      joined.in_water.insert(joined.in_water.end(), tile.in_water.begin(), tile.in_water.end());
+    }
     for (const auto& [a, b] : tile.lines) {
       joined.lines.push_back({std::min(number[a], number[b]), std::max(number[a], number[b])});
     }
     joined.number.push_back(std::move(number));
   }
+  if (!joined.in_water.empty()) joined.in_water.resize(joined.triangles.size());
   // a line along a border is in both tiles
   std::ranges::sort(joined.lines);
   const auto repeated = std::ranges::unique(joined.lines);

@@ -14,6 +14,7 @@ struct JoinedTiles {
   std::vector<hierarchy::BorderPlace> borders;     ///< none inside the tiles
   std::vector<float> water_m;                      ///< NaN on land
   std::vector<hierarchy::Corners> triangles;       ///< tile by tile
+  std::vector<std::uint8_t> in_water;              ///< of each triangle; empty: none is
   std::vector<hierarchy::LineEdge> lines;          ///< each once
   std::vector<std::vector<std::uint32_t>> number;  ///< for each tile, for each of its vertices
 };

@@ -28,7 +28,7 @@ bool is_same(const GridPosition& a, const GridPosition& b) {
 
 TileFeatures::TileFeatures(const GridFeatures& features, const Pyramid& pyramid,
                            const Lattice& lattice, const std::vector<double>& tolerance_m)
-    : features_(features) {
+    : features_(features), water_(features) {
   for (const FeatureLine& line : features.lines) {
     for (std::size_t piece = 0; piece + 1 < line.points.size(); ++piece) {
       add(line, piece, pyramid.leaf_cells());

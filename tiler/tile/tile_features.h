@@ -11,6 +11,7 @@
 #include "hierarchy/mesh/grid_triangles.h"
 #include "tiler/pyramid.h"
 #include "tiler/tile/lattice.h"
+#include "tiler/tile/water_areas.h"
 #include "tiler/tile_id.h"
 
 namespace terrane::tiler {
@@ -29,6 +30,8 @@ class TileFeatures {
   /// The height of the water that a sample lies in; NaN on land.
   float water_m(const hierarchy::SampleId& sample) const;
 
+  const WaterAreas& water() const { return water_; }
+
   /// How far lines may leave those of the next finer level, or at level 0 those that lines_of()
   /// gives: so much less than the level's tolerance that what earlier levels and rounding have
   /// taken is within it, too.
@@ -38,6 +41,7 @@ class TileFeatures {
   void add(const FeatureLine& line, std::size_t piece, std::int64_t cells);
 
   const GridFeatures& features_;
+  WaterAreas water_;
   std::map<std::pair<std::int64_t, std::int64_t>, std::vector<FeatureLine>> lines_;  // by y, x
   std::vector<hierarchy::LineTolerance> tolerances_;
 };

@@ -5,7 +5,7 @@
 namespace terrane::tiler {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x33656c6974727274;  // "trrtile3"
+constexpr std::uint64_t kMagic = 0x34656c6974727274;  // "trrtile4"
 
 }  // namespace
 
@@ -19,6 +19,7 @@ void write_finished_tile(const FinishedTile& tile, const std::filesystem::path& 
   writer.add(tile.mesh.normals);
   writer.add(tile.mesh.grounds);
   writer.add(tile.mesh.triangles);
+  writer.add(tile.mesh.in_water);
   writer.add(tile.mesh.lines);
   writer.add(tile.mesh.error);
   writer.write(file);
@@ -35,6 +36,7 @@ FinishedTile read_finished_tile(const std::filesystem::path& file) {
   tile.mesh.normals = reader.get_vector<Eigen::Vector3f>();
   tile.mesh.grounds = reader.get_vector<Ground>();
   tile.mesh.triangles = reader.get_vector<hierarchy::Corners>();
+  tile.mesh.in_water = reader.get_vector<std::uint8_t>();
   tile.mesh.lines = reader.get_vector<hierarchy::LineEdge>();
   tile.mesh.error = reader.get<MeasuredError>();
   return tile;

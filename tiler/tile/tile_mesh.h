@@ -35,6 +35,7 @@ struct TileMesh {
   std::vector<Eigen::Vector3f> normals;         ///< unit, in the world
   std::vector<Ground> grounds;
   std::vector<hierarchy::Corners> triangles;  ///< counter-clockwise with rows downward
+  std::vector<std::uint8_t> in_water;         ///< of each triangle, 1 or 0; empty: none is
   std::vector<hierarchy::LineEdge> lines;     ///< edges that are parts of lines and shores
   MeasuredError error;
 };

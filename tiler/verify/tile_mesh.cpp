@@ -87,29 +87,35 @@ void check_bounds(const json& accessor, const std::vector<Glb::Vector>& values, 
   }
 }
 
-void check_primitive(const json& document, const json& primitive, TileMesh& mesh) {
+bool is_draco(const json& primitive) {
+  return primitive.value("extensions", json::object()).contains("KHR_draco_mesh_compression");
+}
+
+/// Each kind of primitive has a material of its own.
+bool is_water(const json& document, const json& primitive) {
+  if (!primitive.contains("material")) return false;
+  const json& material = document.at("materials").at(primitive.at("material").get<std::size_t>());
+  return material.value("name", "") == "water";
+}
+
+bool is_skirt(const json& primitive) {
+  return primitive.value("/extras/terrane/skirt"_json_pointer, false);
+}
+
+void check_primitive(const json& document, const json& primitive, std::size_t vertices,
+                     TileMesh& mesh) {
   const json& attributes = primitive.at("attributes");
   if (primitive.value("mode", 4) != 4) mesh.misstated.push_back("its primitive is no triangles");
   // where Draco orders the vertices anew, a target beside it would not fit
-  const bool is_draco =
-      primitive.value("extensions", json::object()).contains("KHR_draco_mesh_compression");
-  if (is_draco ? primitive.contains("targets")
-               : !primitive.contains("targets") ||
-                     primitive.at("targets").at(0).at("POSITION") != attributes.at("_MORPH")) {
+  if (is_draco(primitive)
+          ? primitive.contains("targets")
+          : !primitive.contains("targets") ||
+                primitive.at("targets").at(0).at("POSITION") != attributes.at("_MORPH")) {
     mesh.misstated.push_back("its morph target is not the accessor of _MORPH");
   }
   const json& normals = document.at("accessors").at(attributes.at("NORMAL").get<std::size_t>());
-  if (normals.at("count") != mesh.position.size()) {
+  if (normals.at("count") != vertices) {
     mesh.misstated.push_back("has not one normal per vertex");
-  }
-}
-
-void take_triangles(const Glb& glb, const std::vector<std::uint32_t>& indices, TileMesh& mesh) {
-  if (indices.size() % 3 != 0) glb.fail("the number of indices is no multiple of 3");
-  mesh.triangles.resize(indices.size() / 3);
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    if (indices[i] >= mesh.position.size()) glb.fail("an index points past the vertices");
-    mesh.triangles[i / 3][i % 3] = indices[i];
   }
 }
 
@@ -134,15 +140,41 @@ Vertices read_vertices(const Glb& glb, const json& primitive, const Units& units
   return vertices;
 }
 
+/// Adds what is seen from above: all land, or all water, whose vertices may be the land's.
+void take_surface(const Glb& glb, const json& primitive, const Units& units, const Lattice& origin,
+                  TileMesh& mesh) {
+  const json& document = glb.document();
+  const json& first = document.at("meshes").at(0).at("primitives").at(0);
+  const auto has_same = [&](const char* name) {
+    return first.at("attributes").at(name) == primitive.at("attributes").at(name);
+  };
+  const bool has_its_own =
+      mesh.position.empty() || is_draco(primitive) || !has_same("POSITION") || !has_same("_MORPH");
+  std::size_t before = 0;
+  if (has_its_own) {
+    before = mesh.position.size();
+    const Vertices vertices = read_vertices(glb, primitive, units, origin, mesh);
+    mesh.position.insert(mesh.position.end(), vertices.position.begin(), vertices.position.end());
+    mesh.morph.insert(mesh.morph.end(), vertices.morph.begin(), vertices.morph.end());
+  }
+  const std::size_t count = mesh.position.size() - before;
+  check_primitive(document, primitive, count, mesh);
+  const std::vector<std::uint32_t> indices = glb.indices(primitive);
+  if (indices.size() % 3 != 0) glb.fail("the number of indices is no multiple of 3");
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    if (indices[i] >= count) glb.fail("an index points past the vertices");
+    if (i % 3 == 0) mesh.triangles.emplace_back();
+    mesh.triangles.back()[i % 3] = static_cast<std::uint32_t>(before + indices[i]);
+  }
+  mesh.in_water.resize(mesh.triangles.size(), is_water(document, primitive));
+}
+
 /// Place and displacement, to be sorted by.
 using Standing = std::pair<Lattice, Lattice>;
 
 /// A skirt hangs from vertices of the tile straight down, all of it equally far.
 void take_skirt(const Glb& glb, const json& primitive, const Units& units, const Lattice& origin,
                 TileMesh& mesh) {
-  if (!primitive.at("extras").at("terrane").at("skirt").get<bool>()) {
-    mesh.misstated.push_back("its second primitive is no skirt");
-  }
   const Vertices vertices = read_vertices(glb, primitive, units, origin, mesh);
   std::set<Standing> surface;
   for (std::size_t v = 0; v < mesh.position.size(); ++v) {
@@ -188,20 +220,23 @@ TileMesh read_tile_mesh(const Output& output, const TileKey& key) {
     const json& document = glb.document();
     const json& content = document.at("meshes").at(0);
     const json& primitives = content.at("primitives");
-    const json& primitive = primitives.at(0);
     const json& extras = content.at("extras").at("terrane");
     const auto origin = extras.at("origin").get<Lattice>();
     const Eigen::Vector3d& step = output.levels[static_cast<std::size_t>(key.level)].step_m;
     const Units units = units_of(document, step);
-    Vertices vertices = read_vertices(glb, primitive, units, origin, mesh);
-    mesh.position = std::move(vertices.position);
-    mesh.morph = std::move(vertices.morph);
-    take_triangles(glb, glb.indices(primitive), mesh);
+    std::set<std::pair<bool, bool>> kinds;
+    for (const json& primitive : primitives) {
+      if (!kinds.emplace(is_skirt(primitive), is_water(document, primitive)).second) {
+        mesh.misstated.push_back("has two primitives of one kind");
+      }
+      if (!is_skirt(primitive)) take_surface(glb, primitive, units, origin, mesh);
+    }
+    for (const json& primitive : primitives) {
+      if (is_skirt(primitive)) take_skirt(glb, primitive, units, origin, mesh);
+    }
+    if (mesh.position.empty()) glb.fail("no vertices");
     check_extras(extras, mesh);
     check_node(document, step, origin, mesh);
-    check_primitive(document, primitive, mesh);
-    if (primitives.size() > 1) take_skirt(glb, primitives.at(1), units, origin, mesh);
-    if (primitives.size() > 2) mesh.misstated.push_back("has more primitives than two");
   } catch (const json::exception& error) {
     glb.fail(error.what());
   }

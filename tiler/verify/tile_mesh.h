@@ -23,7 +23,8 @@ struct TileMesh {
   std::vector<Lattice> position;  ///< at t = 0
   std::vector<Lattice> morph;     ///< displacement to t = 1
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<Lattice> hem;  ///< lower ends of its skirts at t = 0 and at t = 1, if it has any
+  std::vector<bool> in_water;  ///< of each triangle: has it the material "water"?
+  std::vector<Lattice> hem;    ///< lower ends of its skirts at t = 0 and at t = 1, if it has any
   std::vector<std::string> misstated;  ///< what the glb says of itself and is not so
 
   Lattice target(std::size_t vertex) const { return position[vertex] + morph[vertex]; }

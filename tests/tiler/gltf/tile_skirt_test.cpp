@@ -45,6 +45,17 @@ TEST(HangSkirt, IsSeenFromTheNeighboursSide) {
   }
 }
 
+TEST(HangSkirt, IsWaterWhereItHangsFromWater) {
+  TileMesh mesh = left_tile();
+  mesh.in_water = {1, 0};  // the second triangle is at the shared side
+  const auto hung = [&] {
+    return hang_skirt(Pyramid({9, 5}, 4), {0, 0, 0}, mesh, mesh.points, {0, 0, -30}).in_water;
+  };
+  EXPECT_EQ(hung(), (std::vector<std::uint8_t>{0, 0}));
+  mesh.in_water = {0, 1};
+  EXPECT_EQ(hung(), (std::vector<std::uint8_t>{1, 1}));
+}
+
 TEST(HangSkirt, ATileWithoutNeighboursHasNone) {
   const TileMesh mesh = left_tile();
   EXPECT_TRUE(

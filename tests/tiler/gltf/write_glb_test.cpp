@@ -136,6 +136,72 @@ TEST(EncodeGlb, PositionsBeyondSixteenBitsAreFloats) {
   EXPECT_EQ(type("_MORPH"), kShort);
 }
 
+/// The square with its second triangle in water.
+TileMesh shore() {
+  TileMesh mesh = square();
+  mesh.normals.assign(4, Eigen::Vector3f(0.6F, 0, 0.8F));
+  mesh.grounds.resize(4);
+  mesh.in_water = {0, 1};
+  return mesh;
+}
+
+TEST(EncodeGlb, WaterIsASecondPrimitiveOnTheSameVerticesWithAMaterialOfItsOwn) {
+  const TileMesh mesh = shore();
+  const auto json = json_of(encode_glb(tile_of(mesh), {.colour = Colour::kSlope}));
+  const auto& primitives = json["meshes"][0]["primitives"];
+  ASSERT_EQ(primitives.size(), 2U);
+  for (const char* name : {"POSITION", "_MORPH"}) {
+    EXPECT_EQ(primitives[0]["attributes"][name], primitives[1]["attributes"][name]);
+  }
+  EXPECT_EQ(primitives[0]["targets"], primitives[1]["targets"]);
+  EXPECT_TRUE(primitives[0]["attributes"].contains("COLOR_0"));
+  EXPECT_FALSE(primitives[1]["attributes"].contains("COLOR_0"));
+  for (const auto& primitive : primitives) {
+    EXPECT_EQ(json["accessors"][primitive["indices"].get<std::size_t>()]["count"], 3);
+  }
+  const auto& land = json["materials"][primitives[0]["material"].get<std::size_t>()];
+  const auto& water = json["materials"][primitives[1]["material"].get<std::size_t>()];
+  EXPECT_FALSE(land.contains("name"));
+  EXPECT_EQ(water["name"], "water");
+  EXPECT_LT(water["pbrMetallicRoughness"]["roughnessFactor"], 0.5);
+}
+
+TEST(EncodeGlb, WaterLooksUpEverywhereAlsoOnAShoreThatDoesNot) {
+  const TileMesh mesh = shore();
+  const std::string glb = encode_glb(tile_of(mesh), {.compression = Compression::kNone});
+  const auto json = json_of(glb);
+  const auto& water = json["meshes"][0]["primitives"][1]["attributes"];
+  const auto& accessor = json["accessors"][water["NORMAL"].get<std::size_t>()];
+  const auto& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+  const auto* bytes = glb.data() + 28 + word_at(glb, 12) + view.value("byteOffset", std::size_t{0});
+  for (std::size_t v = 0; v < 4; ++v, bytes += view["byteStride"].get<std::size_t>()) {
+    EXPECT_EQ(bytes[0], 0);
+    EXPECT_EQ(bytes[1], 127);
+    EXPECT_EQ(bytes[2], 0);
+  }
+}
+
+TEST(EncodeGlb, ATileAllInWaterHasWaterAlone) {
+  TileMesh mesh = shore();
+  mesh.in_water = {1, 1};
+  for (const Compression compression :
+       {Compression::kMeshopt, Compression::kDraco, Compression::kNone}) {
+    const auto json = json_of(encode_glb(tile_of(mesh), {.compression = compression}));
+    ASSERT_EQ(json["meshes"][0]["primitives"].size(), 1U);
+    EXPECT_EQ(json["meshes"][0]["primitives"][0]["material"], 0);
+    ASSERT_EQ(json["materials"].size(), 1U);
+    EXPECT_EQ(json["materials"][0]["name"], "water");
+  }
+}
+
+TEST(EncodeGlb, WithoutWaterTheMarksOfLandChangeNothing) {
+  TileMesh mesh = shore();
+  mesh.in_water = {0, 0};
+  const std::string marked = encode_glb(tile_of(mesh), {});
+  mesh.in_water = {};
+  EXPECT_EQ(encode_glb(tile_of(mesh), {}), marked);
+}
+
 TEST(EncodeGlb, RefusesADisplacementThatTwentyFourBitsCannotHold) {
   const TileMesh mesh = square();
   std::vector<LatticePoint> targets = mesh.points;

@@ -132,6 +132,15 @@ function padded(ArrayType, triples) {
   return new Uint8Array(rows.buffer);
 }
 
+/** Land, and water where a tile says how many of its indices are land's. */
+function partsOf({indices, landIndices = indices.length}) {
+  const parts = [
+    {indices: indices.slice(0, landIndices), material: 0},
+    {indices: indices.slice(landIndices), material: 1},
+  ];
+  return parts.filter((part) => part.indices.length > 0);
+}
+
 /** Compressed streams and what their buffer views say. */
 function encodeStreams(tile) {
   const count = tile.positions.length / 3;
@@ -141,17 +150,21 @@ function encodeStreams(tile) {
     mode: 'ATTRIBUTES',
     bytes: MeshoptEncoder.encodeVertexBuffer(padded(ArrayType, triples), count, stride),
   });
-  const indices = new Uint8Array(Uint16Array.from(tile.indices).buffer);
+  const triangles = (indices) => ({
+    count: indices.length,
+    stride: 2,
+    mode: 'TRIANGLES',
+    bytes: MeshoptEncoder.encodeIndexBuffer(
+      new Uint8Array(Uint16Array.from(indices).buffer),
+      indices.length,
+      2,
+    ),
+  });
   return [
     vertices(Int16Array, tile.positions, 8),
     vertices(Int16Array, tile.toTargets, 8),
     vertices(Int8Array, tile.normals, 4),
-    {
-      count: tile.indices.length,
-      stride: 2,
-      mode: 'TRIANGLES',
-      bytes: MeshoptEncoder.encodeIndexBuffer(indices, tile.indices.length, 2),
-    },
+    ...partsOf(tile).map(({indices}) => triangles(indices)),
   ];
 }
 
@@ -184,6 +197,7 @@ function gltfJson(tile, streams) {
   const step = stepOf(level);
   const bufferViews = bufferViewsOf(streams);
   const last = bufferViews.at(-1);
+  const parts = partsOf(tile);
   const vectors = (bufferView, componentType, rest) => ({
     bufferView,
     componentType,
@@ -200,13 +214,12 @@ function gltfJson(tile, streams) {
     nodes: [{mesh: 0, scale: [step, step, step], translation: gltf(origin).map((v) => v * step)}],
     meshes: [
       {
-        primitives: [
-          {
-            attributes: {POSITION: 0, _MORPH: 1, NORMAL: 2},
-            indices: 3,
-            targets: [{POSITION: 1}],
-          },
-        ],
+        primitives: parts.map(({material}, k) => ({
+          attributes: {POSITION: 0, _MORPH: 1, NORMAL: 2},
+          indices: 3 + k,
+          material,
+          targets: [{POSITION: 1}],
+        })),
         weights: [0],
         extras: {terrane: {level, x, y, origin}},
       },
@@ -215,8 +228,14 @@ function gltfJson(tile, streams) {
       vectors(0, 5122, extremes(tile.positions)),
       vectors(1, 5122, extremes(tile.toTargets)),
       vectors(2, 5120, {normalized: true}),
-      {bufferView: 3, componentType: 5123, count: tile.indices.length, type: 'SCALAR'},
+      ...parts.map(({indices}, k) => ({
+        bufferView: 3 + k,
+        componentType: 5123,
+        count: indices.length,
+        type: 'SCALAR',
+      })),
     ],
+    materials: [{}, {name: 'water'}],
     bufferViews,
     buffers: [
       {byteLength: streams.reduce((sum, {bytes}) => sum + Math.ceil(bytes.length / 4) * 4, 0)},

@@ -1,8 +1,9 @@
-// Reads a tile's glb (docs/formats.md, section glb) without a scene graph: one mesh, one primitive.
+// Reads a tile's glb (docs/formats.md, section glb) without a scene graph: one mesh, its land and its water.
 import type {Vec3} from './vec3';
 
 /** Whole numbers of lattice steps: 16 bits where they fit, else floats. */
 export type Steps = Int16Array | Float32Array;
+export type Indices = Uint16Array | Uint32Array;
 
 /** Numbers of a tile, without gaps; glTF triples. */
 export interface GlbTile {
@@ -12,7 +13,10 @@ export interface GlbTile {
   readonly toTargets: Steps;
   /** Signed bytes, of length 127. */
   readonly normals: Int8Array;
-  readonly indices: Uint16Array | Uint32Array;
+  /** Land first, then water. */
+  readonly indices: Indices;
+  /** How many of the indices are land's. */
+  readonly landIndices: number;
   /** Red, green, blue of each vertex, 0 to 255; and where it lies in the image. */
   readonly colors?: Uint8Array;
   readonly places?: Float32Array;
@@ -56,10 +60,15 @@ interface GltfJson {
   extensionsRequired?: string[];
   nodes?: {scale?: number[]}[];
   images?: {bufferView?: number; mimeType?: string}[];
-  meshes: {
-    extras?: {terrane?: {origin?: Vec3}};
-    primitives: {attributes: Record<string, number>; indices?: number}[];
-  }[];
+  materials?: {name?: string}[];
+  meshes: {extras?: {terrane?: {origin?: Vec3}}; primitives: PrimitiveJson[]}[];
+}
+
+interface PrimitiveJson {
+  attributes: Record<string, number>;
+  indices?: number;
+  material?: number;
+  extras?: {terrane?: {skirt?: boolean}};
 }
 
 const kArrays = {
@@ -83,7 +92,8 @@ export function readGlb(file: ArrayBuffer, stepM: Vec3, decode: DecodeMeshopt): 
     throw new Error('Draco cannot be read. Build with --compression meshopt or none');
   }
   const mesh = json.meshes?.[0];
-  const primitive = mesh?.primitives[0];
+  const {land, water} = surfacesOf(json, mesh?.primitives ?? []);
+  const primitive = land ?? water;
   const origin = mesh?.extras?.terrane?.origin;
   if (!primitive || !origin) throw new Error('no mesh with extras.terrane.origin');
 
@@ -94,7 +104,13 @@ export function readGlb(file: ArrayBuffer, stepM: Vec3, decode: DecodeMeshopt): 
     if (accessor === undefined) throw new Error(`no attribute ${name}`);
     return numbers(accessor);
   };
-  if (primitive.indices === undefined) throw new Error('no indices');
+  const indicesOf = (surface: PrimitiveJson | undefined) => {
+    if (surface && surface.indices === undefined) throw new Error('no indices');
+    if (surface && surface.attributes.POSITION !== primitive.attributes.POSITION) {
+      throw new Error('water with vertices of its own');
+    }
+    return surface && (numbers(surface.indices!) as Indices);
+  };
   const [positions, toTargets] = [attribute('POSITION') as Steps, attribute('_MORPH') as Steps];
   const normals = attribute('NORMAL');
   // without a scale, numbers are metres
@@ -104,9 +120,28 @@ export function readGlb(file: ArrayBuffer, stepM: Vec3, decode: DecodeMeshopt): 
     positions: metres ? divided(positions, metres) : positions,
     toTargets: metres ? divided(toTargets, metres) : toTargets,
     normals: normals instanceof Int8Array ? normals : signedBytes(normals, metres),
-    indices: numbers(primitive.indices) as Uint16Array | Uint32Array,
+    ...joined(indicesOf(land), indicesOf(water)),
     ...drape(json, primitive.attributes, numbers, bytesOf),
   };
+}
+
+/** Land and water of a tile. Skirts are left out. */
+function surfacesOf(json: GltfJson, primitives: PrimitiveJson[]) {
+  const surfaces = primitives.filter(({extras}) => !extras?.terrane?.skirt);
+  const isWater = ({material}: PrimitiveJson) => json.materials?.[material ?? -1]?.name === 'water';
+  const water = surfaces.find(isWater);
+  return {land: surfaces.find((surface) => surface !== water), water};
+}
+
+/** All corners, those of water last. */
+function joined(land: Indices | undefined, water: Indices | undefined) {
+  const landIndices = land?.length ?? 0;
+  if (!land || !water) return {indices: land ?? water!, landIndices};
+  const ArrayType = land.constructor as new (length: number) => Indices;
+  const indices = new ArrayType(landIndices + water.length);
+  indices.set(land);
+  indices.set(water, landIndices);
+  return {indices, landIndices};
 }
 
 function gltfSteps([east, north, up]: Vec3): Vec3 {

@@ -10,8 +10,13 @@ import {
   rampOf,
 } from './color_ramps';
 import {element} from './page';
+import {kWater, kWaterOnMaps} from './water_shader';
 
-export function showLegend(look: Look, tileset: Tileset, tolerancePx: number): void {
+export function showLegend(
+  look: Look,
+  tileset: Tileset,
+  {tolerancePx, hasWater}: {readonly tolerancePx: number; readonly hasWater: boolean},
+): void {
   const legend = element('legend');
   const ramp = rampOf(look);
   legend.hidden = !ramp && look !== 'levels';
@@ -22,10 +27,15 @@ export function showLegend(look: Look, tileset: Tileset, tolerancePx: number): v
     const ends = part('ends');
     ends.append(span(low), span(high));
     legend.replaceChildren(bar, ends);
+    const water = look === 'relief' ? kWater : kWaterOnMaps;
+    if (hasWater && look !== 'error') legend.append(swatch(water, 'Water'));
     legend.ariaLabel = `Colours from ${low} to ${high}`;
   } else if (look === 'levels') {
     const swatches = part('swatches');
-    swatches.append(...tileset.levels.map(({level, toleranceM}) => swatch(level, toleranceM)));
+    const text = (metres: number) => `${Number(metres.toPrecision(3))} m`;
+    swatches.append(
+      ...tileset.levels.map(({level, toleranceM}) => swatch(levelColor(level), text(toleranceM))),
+    );
     legend.replaceChildren(swatches);
     legend.ariaLabel = 'A colour for each level of detail';
   }
@@ -39,11 +49,11 @@ function endsOf(look: Look, {minHeightM, maxHeightM}: Tileset, tolerancePx: numb
   return [metres(minHeightM), metres(maxHeightM)] as const;
 }
 
-function swatch(level: number, toleranceM: number): HTMLElement {
+function swatch(color: number, text: string): HTMLElement {
   const made = document.createElement('span');
   const square = document.createElement('i');
-  square.style.background = cssColor(levelColor(level));
-  made.append(square, `${Number(toleranceM.toPrecision(3))} m`);
+  square.style.background = cssColor(color);
+  made.append(square, text);
   return made;
 }
 

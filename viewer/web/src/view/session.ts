@@ -25,6 +25,7 @@ export class Session {
   private cursor: {right: number; up: number} | undefined;
   private linkTimer = 0;
   private offersImagery: boolean | undefined;
+  private namesWater = false;
   /** Whether the look is the user's, or that of a permalink. */
   private hasChosen = location.hash.includes('look=');
 
@@ -72,7 +73,7 @@ export class Session {
     this.settings = settings;
     this.panel.showTheme(this.theme);
     this.panel.showSettings(settings);
-    showLegend(settings.look, this.tileset, settings.tolerancePx);
+    this.showLegend();
     this.viewer.setTheme(this.theme);
     this.viewer.apply(settings);
     this.linkSoon();
@@ -93,6 +94,7 @@ export class Session {
     const stats = this.viewer.stats();
     this.panel.showFigures(stats);
     if (this.viewer.hasImagery !== this.offersImagery) this.offerImagery();
+    if (this.viewer.hasWater !== this.namesWater) this.showLegend();
     const {contours} = this.settings;
     this.panel.showContourInterval(contours ? lengthText(this.viewer.contourM) : '');
     showError(this.viewer.failureText());
@@ -102,6 +104,12 @@ export class Session {
     this.showCursor();
     this.measure.follow();
     this.linkSoon();
+  }
+
+  private showLegend(): void {
+    const {look, tolerancePx} = this.settings;
+    this.namesWater = this.viewer.hasWater;
+    showLegend(look, this.tileset, {tolerancePx, hasWater: this.namesWater});
   }
 
   /** The first tile with an image or colours has come: that is what people want to see. */

@@ -92,6 +92,7 @@ export function terrainMaterial(shared: SharedUniforms, tile: Tile, drape: Drape
       ...(shared as Record<string, IUniform>),
       stepM: {value: new Vector3()},
       offsetM: {value: new Vector3()},
+      isWater: {value: false},
       beginM: {value: 0},
       perM: {value: 0},
       errorM: {value: tile.errorM},
@@ -103,6 +104,15 @@ export function terrainMaterial(shared: SharedUniforms, tile: Tile, drape: Drape
       // set as it is: the shader writes to the screen without conversion
       levelColor: {value: new Color().setHex(levelColor(tile.level), '')},
     },
+  });
+}
+
+/** Draws the water of a tile, by the same program: so its vertices come to the very same places. */
+export function waterMaterial(tile: ShaderMaterial): ShaderMaterial {
+  const {vertexShader, fragmentShader, polygonOffsetFactor, polygonOffsetUnits, defines} = tile;
+  return new ShaderMaterial({
+    ...{vertexShader, fragmentShader, polygonOffsetFactor, polygonOffsetUnits, defines},
+    uniforms: {...tile.uniforms, isWater: {value: true}},
   });
 }
 

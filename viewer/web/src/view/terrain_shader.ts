@@ -1,6 +1,7 @@
 // How a tile is drawn. The morph is core/morph.ts in GLSL: change both together. `offsetM` and the
 // lattice keep the sums exact, so the two sides of a seam come to the same gl_Position.
 import {kMostHoldbacks} from '../core/holdback';
+import {kWaterColor} from './water_shader';
 
 const kPlace = /* glsl */ `
   attribute vec3 toTarget;
@@ -42,6 +43,7 @@ export const kVertexShader = /* glsl */ `
   varying vec3 vNormal;
   varying float vHeightM;
   varying vec3 vFromEyeM;
+  varying vec2 vPlan;
   #ifdef IMAGE
   attribute vec2 imagePlace;
   uniform vec4 imageSlope;
@@ -63,8 +65,8 @@ export const kVertexShader = /* glsl */ `
     vec3 place = base + t * (zUp(toTarget) * stepM);
     // stored normals are those of the lattice, so they are divided by its steps
     vNormal = mix(normalize(zUp(normal) / stepM), normalize(zUp(targetNormal) / stepM), t);
-    vec2 plan = place.xy + originM.xy;
-    vHeightM = place.z + originM.z + dot(plan, plan) * dropPerM;
+    vPlan = place.xy + originM.xy;
+    vHeightM = place.z + originM.z + dot(vPlan, vPlan) * dropPerM;
     vFromEyeM = place - eyeM;
     #ifdef IMAGE
     vec2 moved = t * zUp(toTarget).xy;
@@ -135,6 +137,9 @@ export const kFragmentShader = /* glsl */ `
   varying vec3 vNormal;
   varying float vHeightM;
   varying vec3 vFromEyeM;
+  varying vec2 vPlan;
+  uniform bool isWater;
+  uniform float dropPerM;
   #ifdef IMAGE
   uniform sampler2D image;
   uniform sampler2D parentImage;
@@ -146,6 +151,7 @@ export const kFragmentShader = /* glsl */ `
   varying vec3 vColor;
   #endif
   ${kSkyColor}
+  ${kWaterColor}
 
   vec3 ramp(sampler2D colors, float share) {
     return texture2D(colors, vec2(clamp(share, 0.0, 1.0), 0.5)).rgb;
@@ -184,6 +190,26 @@ export const kFragmentShader = /* glsl */ `
     return heightColor();
   }
 
+  // where colours are to be read, or have shadows of their own, light only hints at the shape
+  bool isReading() {
+    return look >= 2;
+  }
+
+  vec3 waterSurface(vec3 light) {
+    if (look == 0) return waterColor(kWater * light, 1.0);
+    if (look == 1) return waterColor(vec3(0.5, 0.56, 0.6) * light, 1.0);
+    vec3 hinted = mix(vec3(1.0), light, 0.5);
+    if (look == 2) return waterColor(kWaterOnMaps * hinted, 0.3);
+    if (look == 3) {
+      #ifdef IMAGE
+      return waterColor(imageColor() * hinted, 0.6);
+      #else
+      return waterColor(kWater * light, 1.0);
+      #endif
+    }
+    return waterColor(mix(surfaceColor(vec3(0.0, 0.0, 1.0)), kWaterOnMaps, 0.35) * hinted, 0.2);
+  }
+
   // 0 where the ground is as level as the mesh may be wrong: at a contour's height its lines would follow
   // the triangles there
   float relief() {
@@ -205,13 +231,12 @@ export const kFragmentShader = /* glsl */ `
   void main() {
     vec3 n = normalize(vNormal);
     vec3 color = surfaceColor(n);
+    if (isWater) n = vec3(0.0, 0.0, 1.0);
     n = normalize(vec3(n.xy, n.z / exaggeration));
     float sky = 0.5 + 0.5 * n.z;
     vec3 light = skylight * (0.25 + 0.75 * sky) + sunlight * max(dot(n, sun), 0.0);
-    // where colours are to be read, or have shadows of their own, shading only hints at the shape
-    bool isReading = look >= 2;
-    color *= isReading ? mix(vec3(1.0), light, 0.5) : light;
-    if (contourStrength > 0.0) {
+    color = isWater ? waterSurface(light) : color * (isReading() ? mix(vec3(1.0), light, 0.5) : light);
+    if (contourStrength > 0.0 && !isWater) {
       float line = mix(contour(contours.x), contour(contours.y), contours.z);
       color = mix(color, color * vec3(0.42, 0.3, 0.2), contourStrength * relief() * line);
     }

@@ -21,6 +21,7 @@ import {
   borderLines,
   completeTargets,
   lendImage,
+  materialsOf,
   triangleLines,
   type TileContent,
 } from './tile_content';
@@ -186,8 +187,8 @@ export class TerrainView {
       if (!object.parent) this.scene.add(object);
       object.visible = true;
     }
-    content.mesh.material.polygonOffset = shown.length > 1;
-    setMorph(content.mesh.material, uniforms);
+    for (const material of materialsOf(content.mesh)) material.polygonOffset = shown.length > 1;
+    setMorph(content.material, uniforms);
   }
 }
 

@@ -6,6 +6,7 @@ import {
   Mesh,
   Texture,
   Vector4,
+  type Material,
   type ShaderMaterial,
 } from 'three';
 import {borderOf} from '../core/border';
@@ -22,6 +23,7 @@ import {
   lineMaterial,
   setParentImage,
   terrainMaterial,
+  waterMaterial,
   type SharedUniforms,
 } from './terrain_material';
 import type {Decoded} from './tile_decoder';
@@ -35,7 +37,10 @@ export interface TileContent extends TileVertices {
   readonly indices: GlbTile['indices'];
   readonly imageMap: ImageMap;
   readonly hasDrape: boolean;
-  readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
+  readonly hasWater: boolean;
+  /** Holds the uniforms of everything that is drawn of the tile. */
+  readonly material: ShaderMaterial;
+  readonly mesh: Mesh<BufferGeometry>;
   /** Lines over it, made when they are first shown. */
   triangleLines?: Mesh;
   borderLines?: LineSegments;
@@ -51,7 +56,7 @@ export function makeContent(
   levels: readonly Level[],
   shared: SharedUniforms,
 ): TileContent {
-  const {origin, positions, toTargets, normals, indices, colors, places} = glb;
+  const {origin, positions, toTargets, normals, indices, landIndices, colors, places} = glb;
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(positions, 3));
   geometry.setAttribute('toTarget', new BufferAttribute(toTargets, 3));
@@ -59,11 +64,15 @@ export function makeContent(
   if (colors) geometry.setAttribute('vertexColor', new BufferAttribute(colors, 3, true));
   if (places) geometry.setAttribute('imagePlace', new BufferAttribute(places, 2));
   geometry.setIndex(new BufferAttribute(indices, 1));
+  geometry.addGroup(0, landIndices, 0);
+  geometry.addGroup(landIndices, indices.length - landIndices, 1);
 
   const texture = image && places ? textureOf(image) : undefined;
   const map = places ? imageMap(positions, places) : kNoImage;
   const drape = {image: texture, imageMap: map, hasColors: colors !== undefined};
-  const mesh = fixed(new Mesh(geometry, terrainMaterial(shared, tile, drape)));
+  const material = terrainMaterial(shared, tile, drape);
+  const hasWater = landIndices < indices.length;
+  const mesh = fixed(new Mesh(geometry, hasWater ? [material, waterMaterial(material)] : material));
   // what the arrays take here and on the card, target normals and colours included
   const arrays = 2 * (2 * positions.byteLength + 2 * normals.byteLength + indices.byteLength);
   const pixels = image ? (4 / 3) * 4 * image.width * image.height : 0;
@@ -74,7 +83,7 @@ export function makeContent(
     stepM: levels[tile.level]!.stepM,
     imageMap: map,
     hasDrape: texture !== undefined || colors !== undefined,
-    ...{origin, positions, toTargets, normals, indices, mesh},
+    ...{origin, positions, toTargets, normals, indices, hasWater, material, mesh},
   };
 }
 
@@ -94,8 +103,8 @@ export function completeTargets(content: TileContent, parent: TileContent | unde
 
 /** Gives the mesh the image that it blends into: its own where the parent has none. */
 export function lendImage(content: TileContent, parent: TileContent | undefined): void {
-  const {material} = content.mesh;
-  const above = parent?.mesh.material.uniforms.image!.value as Texture | null | undefined;
+  const {material} = content;
+  const above = parent?.material.uniforms.image!.value as Texture | null | undefined;
   if (parent && above) {
     setParentImage(material, above, mapOfParent(parent.imageMap, parent, content));
   } else if (material.uniforms.image!.value) {
@@ -107,14 +116,16 @@ const kTriangleColor = new Vector4(0.05, 0.08, 0.12, 0.3);
 const kBorderColor = new Vector4(0.08, 0.05, 0.2, 1);
 
 export function triangleLines(content: TileContent): Mesh {
-  const {geometry, material} = content.mesh;
-  content.triangleLines ??= fixed(new Mesh(geometry, lineMaterial(material, kTriangleColor, true)));
+  content.triangleLines ??= fixed(
+    new Mesh(content.mesh.geometry, lineMaterial(content.material, kTriangleColor, true)),
+  );
   return content.triangleLines;
 }
 
 export function borderLines(content: TileContent): LineSegments {
   if (!content.borderLines) {
-    const {geometry, material} = content.mesh;
+    const {material} = content;
+    const {geometry} = content.mesh;
     const lines = new BufferGeometry();
     for (const name of ['position', 'toTarget'])
       lines.setAttribute(name, geometry.getAttribute(name));
@@ -128,7 +139,7 @@ export function borderLines(content: TileContent): LineSegments {
 }
 
 export function disposeContent(content: TileContent): void {
-  const {image} = content.mesh.material.uniforms;
+  const {image} = content.material.uniforms;
   if (image?.value) {
     (image.value.image as ImageBitmap).close();
     image.value.dispose();
@@ -136,8 +147,12 @@ export function disposeContent(content: TileContent): void {
   for (const object of [content.mesh, content.triangleLines, content.borderLines]) {
     object?.removeFromParent();
     object?.geometry.dispose();
-    (object?.material as ShaderMaterial | undefined)?.dispose();
+    for (const material of object ? materialsOf(object) : []) material.dispose();
   }
+}
+
+export function materialsOf({material}: Mesh | LineSegments): readonly Material[] {
+  return Array.isArray(material) ? (material as Material[]) : [material as Material];
 }
 
 /** Its place is in the shader's uniforms, and terrain_view.ts knows whether it is in the picture. */

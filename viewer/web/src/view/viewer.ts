@@ -54,6 +54,7 @@ const kHazeDiagonals = 1.9;
 export class Viewer {
   readonly navigation: Navigation;
   hasImagery = false;
+  hasWater = false;
   private readonly view: TerrainView;
   private readonly streamer: Streamer<TileContent>;
   private readonly decoder = new TileDecoder();
@@ -239,6 +240,7 @@ export class Viewer {
       const beginMs = performance.now();
       const content = makeContent(decoded, tile, this.tileset.levels, this.view.shared);
       this.hasImagery ||= content.hasDrape;
+      this.hasWater ||= content.hasWater;
       const parent = tile.parent && this.streamer.content(tile.parent);
       if (parent || !tile.parent) completeTargets(content, parent ?? undefined);
       this.tilesMs += performance.now() - beginMs;

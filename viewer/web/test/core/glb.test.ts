@@ -36,6 +36,31 @@ describe('readGlb', () => {
     expect(turned(read.indices)).toEqual(turned(tile.indices as number[]));
   });
 
+  it('puts water after the land', () => {
+    const tile = makeTile(1, 1, 1)!;
+    const indices = tile.indices as number[];
+    const half = 3 * Math.floor(indices.length / 6);
+    const whole = readGlb(bytesOf(tile), [1, 1, 1], decode);
+    expect(whole.landIndices).toBe(indices.length);
+    const read = readGlb(bytesOf({...tile, landIndices: half}), [1, 1, 1], decode);
+    expect(read.landIndices).toBe(half);
+    const triangles = (of: ArrayLike<number>, from: number, to: number) =>
+      Array.from({length: (to - from) / 3}, (_, i) =>
+        [0, 1, 2].map((k) => of[from + 3 * i + k]!).sort((a, b) => a - b),
+      );
+    expect(triangles(read.indices, 0, half)).toEqual(triangles(indices, 0, half));
+    expect(triangles(read.indices, half, indices.length)).toEqual(
+      triangles(indices, half, indices.length),
+    );
+  });
+
+  it('reads a tile that is all water', () => {
+    const tile = makeTile(1, 1, 1)!;
+    const read = readGlb(bytesOf({...tile, landIndices: 0}), [1, 1, 1], decode);
+    expect(read.landIndices).toBe(0);
+    expect(read.indices.length).toBe((tile.indices as number[]).length);
+  });
+
   it('says what is missing', () => {
     expect(() => readGlb(new ArrayBuffer(64), [1, 1, 1], decode)).toThrow('no glb');
   });
