@@ -72,18 +72,27 @@ std::vector<verify::WaterArea> water_areas(const std::vector<std::string>& sourc
 }
 
 /// Is what the tiles are held against flat in water, and the DEM elsewhere?
-void check_water(const BuildSettings& settings, const ingest::Dem& levelled, Progress& progress,
-                 verify::VerifyReport& report) {
-  if (settings.features.water.empty()) return;
+verify::WaterFindings check_water(const BuildSettings& settings, const ingest::Dem& levelled,
+                                  std::span<const verify::WaterArea> areas, Progress& progress) {
+  if (areas.empty()) return {};
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, progress);
   NoProgress quietly;
   raise_to_the_ellipsoid(*dem, settings.tiling, quietly);
-  const verify::WaterFindings found =
-      verify::check_water(dem->heights(), levelled.heights(), dem->place(),
-                          water_areas(settings.features.water), settings.build.tolerance_m);
+  return verify::check_water(dem->heights(), levelled.heights(), dem->place(), areas,
+                             settings.build.tolerance_m);
+}
+
+verify::VerifyReport verify_tiles(const std::filesystem::path& out, const BuildSettings& settings,
+                                  const ingest::Dem& dem, int jobs, Progress& progress) {
+  std::vector<verify::WaterArea> areas = water_areas(settings.features.water);
+  const verify::WaterFindings found = check_water(settings, dem, areas, progress);
+  for (std::size_t k = 0; k < areas.size(); ++k) areas[k].height_m = found.heights_m[k];
+  const verify::VerifyOptions options{.jobs = jobs, .water = std::move(areas)};
+  auto report = verify::verify(out, dem.heights(), dem.place(), options, progress);
   report.samples_under_water = found.under_water;
   report.water_samples_wrong = found.wrong;
   report.problems.insert(report.problems.end(), found.problems.begin(), found.problems.end());
+  return report;
 }
 
 Verdict verify_folder(const std::filesystem::path& out, const VerifyCommand& command,
@@ -105,9 +114,7 @@ Verdict verify_folder(const std::filesystem::path& out, const VerifyCommand& com
                                               settings.tiling.fill_m, progress));
   }
   if (!settings.tiling.is_geodetic()) {
-    auto report = verify::verify(out, dem->heights(), dem->place(), options, progress);
-    check_water(settings, *dem, progress, report);
-    return verdict_of(report);
+    return verdict_of(verify_tiles(out, settings, *dem, command.jobs, progress));
   }
   const auto geoid = geoid_of(*dem, settings.tiling, quietly);
   const verify::Undulation undulation = [&](const LonLat& place) {

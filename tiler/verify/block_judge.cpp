@@ -6,10 +6,11 @@ namespace {
 /// Judges the samples of one leaf block against the tiles above it, at every level and time.
 class BlockJudge {
  public:
-  BlockJudge(const Output& output, const std::map<TileKey, TileFindings>& open)
-      : output_(output), open_(open) {}
+  BlockJudge(const Output& output, const WaterJudge& water,
+             const std::map<TileKey, TileFindings>& open)
+      : output_(output), water_(water), open_(open) {}
 
-  BlockFindings run(const SampleBlock& block) const {
+  BlockFindings run(const SampleBlock& block) {
     BlockFindings findings{.leaf = block.leaf, .window = block.window};
     findings.rim = rim_of(block);
     const int levels = static_cast<int>(output_.levels.size());
@@ -17,6 +18,7 @@ class BlockJudge {
       const int times = level + 1 == levels ? 1 : static_cast<int>(kTimeCount);
       for (int time = 0; time < times; ++time) judge_slot(block, {level, time}, findings);
     }
+    judge_sides(block, findings);
     return findings;
   }
 
@@ -59,7 +61,7 @@ class BlockJudge {
     return judge(block, meshes, time_at(static_cast<std::size_t>(slot.time)), near_m);
   }
 
-  void judge_slot(const SampleBlock& block, const Slot& slot, BlockFindings& findings) const {
+  void judge_slot(const SampleBlock& block, const Slot& slot, BlockFindings& findings) {
     const std::vector<Verdict> verdicts = verdicts_of(block, slot);
     const double limit_m = tolerance_m(output_.levels, slot) * (1 + 1e-9);
     BlockFindings::OfSlot of_slot{.slot = slot, .inside = {}, .rim = {}};
@@ -71,18 +73,37 @@ class BlockJudge {
         of_slot.inside.add(verdict, {column, row}, limit_m);
       }
     });
+    if (slot.time == 0) at_rest_.push_back(verdicts);
     findings.slots.push_back(std::move(of_slot));
   }
 
+  /// Water must be where the polygons are, and land elsewhere.
+  void judge_sides(const SampleBlock& block, BlockFindings& findings) const {
+    const std::vector<WaterShores::Place> places = water_.find(block);
+    for (auto& of_slot : findings.slots) {
+      if (of_slot.slot.time != 0) continue;
+      const auto level = static_cast<std::size_t>(of_slot.slot.level);
+      const double limit_m =
+          output_.levels[level].tolerance_m + output_.levels[level].plan_step_m();
+      for_each_terrain_sample(block, [&](std::int64_t column, std::int64_t row) {
+        const std::size_t i = block.index(column, row);
+        if (!is_on_wrong_side(at_rest_[level][i], places[i], limit_m)) return;
+        if (of_slot.on_wrong_side++ == 0) of_slot.first_on_wrong_side = {column, row};
+      });
+    }
+  }
+
   const Output& output_;
+  const WaterJudge& water_;
+  std::vector<std::vector<Verdict>> at_rest_;  ///< by level
   const std::map<TileKey, TileFindings>& open_;
 };
 
 }  // namespace
 
-BlockFindings judge_block(const SampleBlock& block, const Output& output,
+BlockFindings judge_block(const SampleBlock& block, const Output& output, const WaterJudge& water,
                           const std::map<TileKey, TileFindings>& open) {
-  return BlockJudge(output, open).run(block);
+  return BlockJudge(output, water, open).run(block);
 }
 
 }  // namespace terrane::verify

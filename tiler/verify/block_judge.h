@@ -5,6 +5,7 @@
 #include "tiler/verify/sample_block.h"
 #include "tiler/verify/sample_tally.h"
 #include "tiler/verify/tile_examination.h"
+#include "tiler/verify/water_triangles.h"
 
 namespace terrane::verify {
 
@@ -12,7 +13,7 @@ namespace terrane::verify {
 /// Thread-safe.
 ///
 /// \param open  examined tiles, with those above the block and their siblings.
-BlockFindings judge_block(const SampleBlock& block, const Output& output,
+BlockFindings judge_block(const SampleBlock& block, const Output& output, const WaterJudge& water,
                           const std::map<TileKey, TileFindings>& open);
 
 }  // namespace terrane::verify

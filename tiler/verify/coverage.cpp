@@ -62,6 +62,7 @@ struct Candidate {
   Corners corners;
   std::array<GridPosition, 3> at = {};
   double margin = 0;
+  bool is_water = false;
   double first_column, last_column, first_row, last_row;
 
   /// Columns in which samples of a row may be under it, or within the margin.
@@ -92,7 +93,8 @@ struct Candidate {
 
 Candidate candidate(const PlacedMesh& mesh, std::uint32_t triangle, double t) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  Candidate candidate{{}, {}, mesh.margin_cells(triangle), kFar, -kFar, kFar, -kFar};
+  const bool is_water = mesh.mesh().in_water[triangle];
+  Candidate candidate{{}, {}, mesh.margin_cells(triangle), is_water, kFar, -kFar, kFar, -kFar};
   for (std::size_t n = 0; n < 3; ++n) {
     const std::uint32_t vertex = mesh.mesh().triangles[triangle][n];
     const GridPosition at = mesh.grid_position(vertex, t);
@@ -135,7 +137,8 @@ void hit_samples(const SampleBlock& block, const Candidate& candidate,
       const std::optional<double> height_m = height_over(sample, candidate.corners);
       if (!height_m) continue;
       Verdict& verdict = verdicts[block.index(column, row)];
-      verdict = merge(verdict, {Cover::kHit, std::abs(*height_m)});
+      verdict = merge(verdict,
+                      {Cover::kHit, std::abs(*height_m), !candidate.is_water, candidate.is_water});
     }
   }
 }
@@ -157,7 +160,10 @@ Verdict search_near(const Sample& sample, double column, double row,
 
 Verdict merge(const Verdict& a, const Verdict& b) {
   if (a.cover != b.cover) return a.cover > b.cover ? a : b;
-  return a.error_m > b.error_m ? a : b;
+  Verdict worse = a.error_m > b.error_m ? a : b;
+  worse.under_land = a.under_land || b.under_land;
+  worse.under_water = a.under_water || b.under_water;
+  return worse;
 }
 
 std::vector<Verdict> judge(const SampleBlock& block, const std::vector<const PlacedMesh*>& meshes,

@@ -19,6 +19,7 @@ enum class Cover : std::uint8_t {
 struct Verdict {
   Cover cover = Cover::kNone;
   double error_m = 0;  ///< |mesh - DEM| along the vertical; the worst, if several triangles are hit
+  bool under_land = false, under_water = false;  ///< what triangles were hit: both on a shore
 };
 
 /// What two meshes (neighbours, of which either may cover the sample) say together.

@@ -52,6 +52,12 @@ struct LevelReport {
   bool has_morph() const { return !morph.empty(); }
   std::vector<MorphReport> morph;  ///< one for each of kMorphTimes; empty for the root
 
+  /// Water, against the polygons that it was built from.
+  std::int64_t water_triangles = 0;
+  std::int64_t uneven_water_triangles = 0;  ///< not at the height of a lake there
+  /// Farther from any shore than the tolerance; on borders of leaf tiles once for each.
+  std::int64_t samples_on_wrong_side = 0;
+
   /// Tiles whose box lacks some of their vertices (t = 0 or 1), and children that stick out of it.
   std::int64_t boxes_violated = 0;
   std::int64_t nested_errors_violated = 0;  ///< tiles that state a smaller error than a child's

@@ -73,6 +73,23 @@ void print_listing(const VerifyReport& report, Buffer out) {
   }
 }
 
+void print_water(const VerifyReport& report, Buffer out) {
+  const auto has_water = [](const LevelReport& level) {
+    return level.water_triangles > 0 || level.samples_on_wrong_side > 0;
+  };
+  if (std::ranges::any_of(report.levels, has_water)) {
+    fmt::format_to(out, "\n{:>5} {:>6} {:>7} {:>11}\n", "level", "water", "uneven", "wrong_side");
+    for (const LevelReport& level : report.levels) {
+      fmt::format_to(out, "{:>5} {:>6} {:>7} {:>11}\n", level.level, level.water_triangles,
+                     level.uneven_water_triangles, level.samples_on_wrong_side);
+    }
+  }
+  if (report.samples_under_water > 0 || report.water_samples_wrong > 0) {
+    fmt::format_to(out, "\n{} samples in water, {} samples at another height than their own\n",
+                   report.samples_under_water, report.water_samples_wrong);
+  }
+}
+
 Json to_json(const MorphReport& morph) {
   return {{"t", morph.t},
           {"max_error_m", morph.max_error_m},
@@ -101,6 +118,9 @@ Json to_json(const LevelReport& level) {
                  {"parent_triangles_missing", level.parent_triangles_missing},
                  {"parent_triangles_extra", level.parent_triangles_extra},
                  {"root_morphs", level.root_morphs},
+                 {"water_triangles", level.water_triangles},
+                 {"uneven_water_triangles", level.uneven_water_triangles},
+                 {"samples_on_wrong_side", level.samples_on_wrong_side},
                  {"boxes_violated", level.boxes_violated},
                  {"nested_errors_violated", level.nested_errors_violated},
                  {"stated_error_too_small", level.stated_error_too_small},
@@ -129,10 +149,7 @@ std::string to_text(const VerifyReport& report) {
   print_seams(report, out);
   print_morphs(report, out);
   print_listing(report, out);
-  if (report.samples_under_water > 0 || report.water_samples_wrong > 0) {
-    fmt::format_to(out, "\n{} samples in water, {} samples at another height than their own\n",
-                   report.samples_under_water, report.water_samples_wrong);
-  }
+  print_water(report, out);
   return text + verdict_text(report.problems, report.problems_left_out, report.holds());
 }
 

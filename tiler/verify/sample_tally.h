@@ -52,8 +52,10 @@ struct BlockFindings {
   std::vector<SamplePlace> rim;  ///< terrain samples that other blocks may have too
   struct OfSlot {
     Slot slot;
-    Tally inside;              ///< of the samples that no other block has
-    std::vector<Verdict> rim;  ///< one per entry of rim
+    Tally inside;                    ///< of the samples that no other block has
+    std::vector<Verdict> rim;        ///< one per entry of rim
+    std::int64_t on_wrong_side = 0;  ///< of a shore, at rest; those of the rim as well
+    SamplePlace first_on_wrong_side;
   };
   std::vector<OfSlot> slots;
 };

@@ -73,6 +73,17 @@ void check_box(TileFindings& findings, const Box& box, const Eigen::Vector3d& st
   }
 }
 
+void check_water(TileFindings& findings, const LevelEntry& level, const WaterJudge& water) {
+  const std::vector<bool>& in_water = findings.placed->mesh().in_water;
+  findings.water_triangles = std::count(in_water.begin(), in_water.end(), true);
+  findings.uneven_water_triangles =
+      water.count_uneven(*findings.placed, level.step_m, level.tolerance_m);
+  if (findings.uneven_water_triangles == 0) return;
+  findings.problems.push_back(
+      fmt::format("{}: {} triangles of water are not at the height of a lake there",
+                  to_string(findings.key), findings.uneven_water_triangles));
+}
+
 void check_facts(TileFindings& findings, const TileEntry& entry) {
   const TileMesh& mesh = findings.placed->mesh();
   findings.misstated = mesh.misstated;
@@ -89,7 +100,7 @@ void check_facts(TileFindings& findings, const TileEntry& entry) {
 }  // namespace
 
 TileFindings examine_tile(const Output& output, const World& world, const ValidDomain& domain,
-                          const TileKey& key) {
+                          const WaterJudge& water, const TileKey& key) {
   TileFindings findings{.key = key};
   const TileEntry* entry = output.find(key);
   if (entry == nullptr) return findings;
@@ -110,6 +121,7 @@ TileFindings examine_tile(const Output& output, const World& world, const ValidD
   if (!is_root) findings.at_next_level = triangles_at_next_level(mesh);
   count_folds(findings, is_root);
   check_box(findings, entry->box, output.levels[static_cast<std::size_t>(key.level)].step_m);
+  check_water(findings, output.levels[static_cast<std::size_t>(key.level)], water);
   check_facts(findings, *entry);
   return findings;
 }

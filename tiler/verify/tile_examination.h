@@ -8,6 +8,7 @@
 #include "tiler/verify/border.h"
 #include "tiler/verify/placed_mesh.h"
 #include "tiler/verify/sample_tally.h"
+#include "tiler/verify/water_triangles.h"
 
 namespace terrane::verify {
 
@@ -22,6 +23,7 @@ struct TileFindings {
   std::int64_t torn_edges = 0;
   std::int64_t vertices_with_morph = 0;
   std::int64_t vertices_outside_box = 0;
+  std::int64_t water_triangles = 0, uneven_water_triangles = 0;
   double measured_error_m = 0;                 ///< filled in as blocks are judged
   std::array<SeamVertices, 4> sides;           ///< by Side
   std::vector<LatticeTriangle> at_rest;        ///< sorted
@@ -33,6 +35,6 @@ struct TileFindings {
 /// Reads a tile and checks what can be checked without its neighbours. Thread-safe.
 /// \throws InputError if its glb is missing or damaged.
 TileFindings examine_tile(const Output& output, const World& world, const ValidDomain& domain,
-                          const TileKey& key);
+                          const WaterJudge& water, const TileKey& key);
 
 }  // namespace terrane::verify

@@ -54,11 +54,12 @@ Lattice scaled(const Lattice& place, const Lattice& ratio) {
 class Verification {
  public:
   Verification(const Output& output, const HeightSource& heights, const World& world,
-               const ValidDomain& domain, Progress& progress)
+               const ValidDomain& domain, const WaterJudge& water, Progress& progress)
       : output_(output),
         heights_(heights),
         world_(world),
         domain_(domain),
+        water_(water),
         progress_(progress),
         samples_(output.tiling, output.levels) {
     for (std::size_t level = 0; level < output.levels.size(); ++level) {
@@ -118,7 +119,7 @@ class Verification {
   void examine(const std::vector<TileKey>& keys) {
     std::vector<TileFindings> findings(keys.size());
     tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t n) {
-      findings[n] = examine_tile(output_, world_, domain_, keys[n]);
+      findings[n] = examine_tile(output_, world_, domain_, water_, keys[n]);
     });
     for (TileFindings& found : findings) open_.emplace(found.key, std::move(found));
   }
@@ -127,12 +128,13 @@ class Verification {
     std::vector<BlockFindings> findings(leaves.size());
     tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
       findings[n] = judge_block(read_sample_block(heights_, world_, output_.tiling, leaves[n]),
-                                output_, open_);
+                                output_, water_, open_);
     });
     // added up in the order of the walk, whoever judged them
     for (const BlockFindings& found : findings) {
       samples_.add(found);
       note_measured(found);
+      note_sides(found);
     }
   }
 
@@ -143,6 +145,19 @@ class Verification {
       double& measured_m = open_.at(output_.tiling.above(found.leaf, number)).measured_error_m;
       measured_m = std::max(measured_m, of_slot.inside.max_error_m);
       for (const Verdict& verdict : of_slot.rim) measured_m = std::max(measured_m, verdict.error_m);
+    }
+  }
+
+  void note_sides(const BlockFindings& found) {
+    for (const auto& of_slot : found.slots) {
+      if (of_slot.on_wrong_side == 0) continue;
+      const TileKey tile = output_.tiling.above(found.leaf, of_slot.slot.level);
+      level(tile).samples_on_wrong_side += of_slot.on_wrong_side;
+      problems_.push_back(
+          fmt::format("{}: {} samples on the wrong side of a shore, the first at (column {}, row "
+                      "{})",
+                      to_string(tile), of_slot.on_wrong_side, of_slot.first_on_wrong_side.column,
+                      of_slot.first_on_wrong_side.row));
     }
   }
 
@@ -168,6 +183,8 @@ class Verification {
       of_level.morph[n].folded_triangles += tile.folded[n + 1];
     }
     of_level.torn_edges += tile.torn_edges;
+    of_level.water_triangles += tile.water_triangles;
+    of_level.uneven_water_triangles += tile.uneven_water_triangles;
     of_level.boxes_violated += tile.vertices_outside_box > 0;
     of_level.facts_misstated += static_cast<std::int64_t>(tile.misstated.size());
     for (const std::string& what : tile.misstated) {
@@ -323,6 +340,7 @@ class Verification {
   const HeightSource& heights_;
   const World& world_;
   const ValidDomain& domain_;
+  const WaterJudge& water_;
   Progress& progress_;
   SampleTally samples_;
   VerifyReport report_;
@@ -355,10 +373,12 @@ VerifyReport verify(const std::filesystem::path& folder, const HeightSource& hei
   const Output output = read_output(folder);
   check_dem(output, heights, place);
   const World world(output.frame, place);
+  const WaterJudge water(world, place, options.water, output.levels.back().tolerance_m);
   const ValidDomain domain(heights, output.tiling, progress);
   tbb::task_arena arena(options.jobs > 0 ? options.jobs : tbb::task_arena::automatic);
   VerifyReport report;
-  arena.execute([&] { report = Verification(output, heights, world, domain, progress).run(); });
+  arena.execute(
+      [&] { report = Verification(output, heights, world, domain, water, progress).run(); });
   return report;
 }
 

@@ -6,11 +6,14 @@
 #include "core/height_source.h"
 #include "core/progress.h"
 #include "tiler/verify/report.h"
+#include "tiler/verify/water_shores.h"
 
 namespace terrane::verify {
 
 struct VerifyOptions {
   int jobs = 0;  ///< threads; 0: one per core. The report does not depend on it.
+  /// The water of the DEM: what tiles hold as water has to lie there, at its height, and no land.
+  std::vector<WaterArea> water = {};
 };
 
 /// Checks what `terrane build` wrote against the DEM that it was built from.

@@ -1,25 +1,21 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/georeference.h"
 #include "core/height_source.h"
+#include "tiler/verify/water_shores.h"
 
 namespace terrane::verify {
-
-/// A body of water as its file has it: the outer shore and those of its islands, each closed
-/// without repeating its first point. Longitudes (x) and latitudes (y) in degrees, or, for a DEM
-/// without a CRS, its plan.
-struct WaterArea {
-  std::vector<std::vector<PlanPosition>> shores;
-};
 
 /// What was found of water in a reference: the heights that a mesh is held against.
 struct WaterFindings {
   std::int64_t under_water = 0;  ///< samples farther from any shore than the tolerance, inside
   std::int64_t wrong = 0;        ///< samples that have not the height that they ought to have
+  std::vector<std::optional<float>> heights_m;  ///< of each body with a sample clearly inside
   std::vector<std::string> problems;
 };
 

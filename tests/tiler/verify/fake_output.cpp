@@ -197,10 +197,11 @@ std::size_t add_normals(GlbParts& parts, std::size_t count) {
   return parts.accessors.size() - 1;
 }
 
-std::size_t add_indices(GlbParts& parts, const FakeTile& tile) {
+std::size_t add_indices(GlbParts& parts, const FakeTile& tile, bool is_water) {
   std::vector<unsigned int> indices;
-  for (const auto& triangle : tile.triangles) {
-    indices.insert(indices.end(), triangle.begin(), triangle.end());
+  for (std::size_t n = 0; n < tile.triangles.size(); ++n) {
+    if (tile.in_water.contains(n) != is_water) continue;
+    indices.insert(indices.end(), tile.triangles[n].begin(), tile.triangles[n].end());
   }
   std::vector<unsigned char> encoded(
       meshopt_encodeIndexBufferBound(indices.size(), tile.position.size()));
@@ -232,12 +233,17 @@ json glb_document(const FakeTile& tile, const FakeLevel& level, GlbParts& parts)
   const auto position = add_shorts(parts, positions);
   const auto morph = add_shorts(parts, morphs);
   const auto normal = add_normals(parts, positions.size());
-  const auto indices = add_indices(parts, tile);
   const auto& step = level.step_m;
-  const json primitive = {
-      {"attributes", {{"POSITION", position}, {"_MORPH", morph}, {"NORMAL", normal}}},
-      {"targets", json::array({{{"POSITION", morph}}})},
-      {"indices", indices}};
+  json primitives = json::array();
+  for (const bool is_water : {false, true}) {
+    const std::size_t wet = tile.in_water.size();
+    if ((is_water ? wet : tile.triangles.size() - wet) == 0) continue;
+    primitives.push_back(
+        {{"attributes", {{"POSITION", position}, {"_MORPH", morph}, {"NORMAL", normal}}},
+         {"targets", json::array({{{"POSITION", morph}}})},
+         {"indices", add_indices(parts, tile, is_water)},
+         {"material", is_water ? 1 : 0}});
+  }
   const json extras = {{"level", tile.level}, {"x", tile.x}, {"y", tile.y}, {"origin", origin}};
   return {
       {"asset", {{"version", "2.0"}}},
@@ -247,8 +253,8 @@ json glb_document(const FakeTile& tile, const FakeLevel& level, GlbParts& parts)
                                {static_cast<double>(origin[0]) * step[0],
                                 static_cast<double>(origin[2]) * step[2],
                                 static_cast<double>(-origin[1]) * step[1]}}}})},
-      {"meshes", json::array({{{"primitives", json::array({primitive})},
-                               {"extras", {{"terrane", extras}}}}})},
+      {"materials", json::array({json::object(), {{"name", "water"}}})},
+      {"meshes", json::array({{{"primitives", primitives}, {"extras", {{"terrane", extras}}}}})},
       {"accessors", parts.accessors},
       {"bufferViews", parts.views},
       {"buffers", json::array({{{"byteLength", parts.binary.size()}}, {{"byteLength", 1 << 20}}})}};
@@ -480,10 +486,12 @@ WrittenOutput::WrittenOutput(const FakeOutput& output) {
 
 WrittenOutput::~WrittenOutput() { std::filesystem::remove_all(folder_); }
 
-VerifyReport verdict_on(const FakeOutput& output, const FakeDem& dem, const Georeference& place) {
+VerifyReport verdict_on(const FakeOutput& output, const FakeDem& dem, const Georeference& place,
+                        std::vector<WaterArea> water) {
   const WrittenOutput written(output);
   NoProgress progress;
-  return verify::verify(written.folder(), dem, place, {.jobs = 1}, progress);
+  return verify::verify(written.folder(), dem, place, {.jobs = 1, .water = std::move(water)},
+                        progress);
 }
 
 }  // namespace terrane::verify::testing

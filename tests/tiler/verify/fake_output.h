@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,7 @@ struct FakeTile {
   std::vector<Triple> morph;
   std::vector<std::array<std::int64_t, 2>> sample;  ///< column and row of each vertex
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::set<std::size_t> in_water;  ///< numbers of triangles
 
   /// The vertex that stands on a sample at t = 0.
   std::size_t vertex_at(std::int64_t column, std::int64_t row) const;
@@ -139,6 +141,7 @@ class WrittenOutput {
 };
 
 /// Writes, verifies, removes.
-VerifyReport verdict_on(const FakeOutput& output, const FakeDem& dem, const Georeference& place);
+VerifyReport verdict_on(const FakeOutput& output, const FakeDem& dem, const Georeference& place,
+                        std::vector<WaterArea> water = {});
 
 }  // namespace terrane::verify::testing
