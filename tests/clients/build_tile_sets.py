@@ -27,6 +27,7 @@ POINTS = 200
 TRINIDAD_8M = "--tolerance 8 --attribution Terrane_test"
 ST_HELENS = "st_helens/SainteHelens_post1980_30m.dem"
 CRATER_LAKE = "crater_lake/crater_garland_nad27_utm10.tif"
+WATER = " --water {data}/crater_lake/crater_lake_shoreline.gpkg"
 TILE_SETS = {
     "trinidad": ("trinidad", TRINIDAD_8M),
     "trinidad-split": ("trinidad", TRINIDAD_8M + " --tile-cells 16 --tileset-tiles 50"),
@@ -40,12 +41,12 @@ TILE_SETS = {
                         " --skirts auto"),
     "st_helens-float": (ST_HELENS, "--tolerance 4 --positions float --colour slope --skirts 20"),
     "crater_lake": (CRATER_LAKE, "--tolerance 4 --skirts auto --material unlit"
-                    " --colour hypsometric"),
-    "crater_lake-draco": (CRATER_LAKE, "--tolerance 4 --compression draco --colour slope"),
-    "crater_lake-none": (CRATER_LAKE, "--tolerance 4 --compression none"),
+                    " --colour hypsometric" + WATER),
+    "crater_lake-draco": (CRATER_LAKE, "--tolerance 4 --compression draco --colour slope" + WATER),
+    "crater_lake-none": (CRATER_LAKE, "--tolerance 4 --compression none" + WATER),
     # the image covers a part of the DEM
     "crater_lake-webp": (CRATER_LAKE, "--tolerance 4 --texture-format webp --material unlit"
-                         " --texture {data}/crater_lake/craterlake-imagery-30m.tif"),
+                         " --texture {data}/crater_lake/craterlake-imagery-30m.tif" + WATER),
 }
 
 

@@ -26,7 +26,9 @@ SKIPPED = 77
 TERRAINS = {
     "caldera": ("synthetic:caldera?size=513&seed=1", "1"),
     "st_helens": ("st_helens/SainteHelens_post1980_30m.dem", "2"),
+    "crater_lake": ("crater_lake/N42W123.hgt", "2"),
 }
+SHORELINE = "crater_lake/crater_lake_shoreline.gpkg"
 
 
 def dem_and_tolerance_of(terrain, data):
@@ -34,10 +36,19 @@ def dem_and_tolerance_of(terrain, data):
     return dem if dem.startswith("synthetic:") else str(data / dem), tolerance_m
 
 
-def reason_to_skip(dem, viewer_built):
+def cut_lake(dem, work):
+    """The lake and its mountain, without the voids on its cliffs."""
+    window, filled = work / "window.tif", work / "lake.tif"
+    subprocess.run(["gdal_translate", "-q", "-srcwin", "900", "0", "301", "250", dem, window],
+                   check=True)
+    subprocess.run(["gdal_fillnodata.py", "-q", window, filled], check=True)
+    return str(filled)
+
+
+def reason_to_skip(terrain, dem, viewer_built):
     if not viewer_built:
         return "the web viewer is not part of this build"
-    for tool in ("node", "chromium"):
+    for tool in ("node", "chromium", *(["gdal_fillnodata.py"] if terrain == "crater_lake" else [])):
         if not shutil.which(tool):
             return f"{tool} is missing"
     if not dem.startswith("synthetic:") and not pathlib.Path(dem).exists():
@@ -87,17 +98,24 @@ def main():
     options = parser.parse_args()
 
     dem, tolerance_m = dem_and_tolerance_of(options.terrain, options.data)
-    if reason := reason_to_skip(dem, options.viewer_built):
+    if reason := reason_to_skip(options.terrain, dem, options.viewer_built):
         print(f"skipped: {reason}")
         return SKIPPED
 
     options.work.mkdir(parents=True, exist_ok=True)
     tiles = options.work / "tiles"
-    subprocess.run([options.terrane, "build", dem, "-o", tiles, "--tolerance", tolerance_m],
+    water = []
+    if options.terrain == "crater_lake":
+        dem, water = cut_lake(dem, options.work), ["--water", options.data / SHORELINE]
+    subprocess.run([options.terrane, "build", dem, "-o", tiles, "--tolerance", tolerance_m, *water],
                    check=True)
     with served(options.terrane, tiles) as url:
         checks = [["view.mjs", "--screenshot", options.work / "screenshot.png", "--steps", "12"],
                   ["flight.mjs", "--cameras", "6", "--flight", "20", "--steps", "5"]]
+        if water:
+            checks = [["looks.mjs", "--images", IMAGES, "--water"],
+                      ["flight.mjs", "--cameras", "8", "--flight", "8", "--steps", "2",
+                       "--pieces", "2"]]
         if options.terrain == "caldera":
             archive = options.work / "caldera.pmtiles"
             subprocess.run([options.terrane, "pack", tiles, "-o", archive], check=True)

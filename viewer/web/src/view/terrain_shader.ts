@@ -190,24 +190,16 @@ export const kFragmentShader = /* glsl */ `
     return heightColor();
   }
 
-  // where colours are to be read, or have shadows of their own, light only hints at the shape
-  bool isReading() {
-    return look >= 2;
-  }
-
-  vec3 waterSurface(vec3 light) {
-    if (look == 0) return waterColor(kWater * light, 1.0);
-    if (look == 1) return waterColor(vec3(0.5, 0.56, 0.6) * light, 1.0);
-    vec3 hinted = mix(vec3(1.0), light, 0.5);
-    if (look == 2) return waterColor(kWaterOnMaps * hinted, 0.3);
-    if (look == 3) {
-      #ifdef IMAGE
-      return waterColor(imageColor() * hinted, 0.6);
-      #else
-      return waterColor(kWater * light, 1.0);
-      #endif
-    }
-    return waterColor(mix(surfaceColor(vec3(0.0, 0.0, 1.0)), kWaterOnMaps, 0.35) * hinted, 0.2);
+  // color: what the look gives level ground
+  vec3 waterSurface(vec3 color, vec3 light) {
+    if (look == 1) return waterColor(vec3(0.5, 0.56, 0.6), light, 1.0);
+    if (look == 2) return waterColor(kWaterOnMaps, light, 0.3);
+    if (look == 4) return waterColor(mix(color, kWaterOnMaps, 0.35), light, 0.2);
+    if (look == 5) return waterColor(color, light, 0.2);
+    #ifdef IMAGE
+    if (look == 3) return waterColor(color, light, 0.6);
+    #endif
+    return waterColor(kWater, light, 1.0);
   }
 
   // 0 where the ground is as level as the mesh may be wrong: at a contour's height its lines would follow
@@ -229,13 +221,15 @@ export const kFragmentShader = /* glsl */ `
   }
 
   void main() {
-    vec3 n = normalize(vNormal);
+    vec3 n = isWater ? vec3(0.0, 0.0, 1.0) : normalize(vNormal);
     vec3 color = surfaceColor(n);
-    if (isWater) n = vec3(0.0, 0.0, 1.0);
     n = normalize(vec3(n.xy, n.z / exaggeration));
     float sky = 0.5 + 0.5 * n.z;
     vec3 light = skylight * (0.25 + 0.75 * sky) + sunlight * max(dot(n, sun), 0.0);
-    color = isWater ? waterSurface(light) : color * (isReading() ? mix(vec3(1.0), light, 0.5) : light);
+    // where colours are to be read, or have shadows of their own, shading only hints at the shape
+    bool isReading = look >= 2;
+    if (isReading) light = mix(vec3(1.0), light, 0.5);
+    color = isWater ? waterSurface(color, light) : color * light;
     if (contourStrength > 0.0 && !isWater) {
       float line = mix(contour(contours.x), contour(contours.y), contours.z);
       color = mix(color, color * vec3(0.42, 0.3, 0.2), contourStrength * relief() * line);

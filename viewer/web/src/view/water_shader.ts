@@ -48,17 +48,21 @@ export const kWaterColor = /* glsl */ `
     return mix(waves(floor(octave)), waves(floor(octave) + 1.0), fract(octave));
   }
 
-  // body: what is seen of the water itself, lit already; shine: 0 to 1
-  vec3 waterColor(vec3 body, float shine) {
+  // body: the water's own colour; light: what falls on it; shine: how much it mirrors, 0 to 1
+  vec3 waterColor(vec3 body, vec3 light, float shine) {
     vec3 up = normalize(vec3(2.0 * dropPerM * vPlan, 1.0));
     vec3 wave = waves();
-    vec3 n = normalize(up - vec3(0.05 * wave.yz, 0.0));
+    vec3 n = normalize(up - vec3(0.055 * wave.yz, 0.0));
     vec3 ray = normalize(vec3(vFromEyeM.xy, vFromEyeM.z * exaggeration));
     vec3 mirrored = reflect(ray, n);
     mirrored.z = abs(mirrored.z);
     float grazing = 1.0 - max(dot(-ray, n), 0.0);
-    float fresnel = 0.04 + 0.66 * pow(grazing, 4.0);
-    vec3 color = mix(body * (0.97 + 0.06 * wave.x), skyColor(mirrored), shine * fresnel);
+    float fresnel = 0.03 + 0.7 * pow(grazing, 3.4);
+    // one looks deeper down than along, and at night into the dark
+    float brightness = dot(light, vec3(0.3, 0.6, 0.1));
+    float depth = mix(0.86, 1.04, grazing) * mix(0.55, 1.0, smoothstep(0.2, 0.7, brightness));
+    body *= mix(1.0, depth, shine) * (0.96 + 0.08 * wave.x);
+    vec3 color = mix(body * light, skyColor(mirrored), shine * fresnel);
     float glint = pow(max(dot(mirrored, sun), 0.0), 220.0);
     return color + shine * glint * mix(0.2, 0.8, sunGlow) * sunlight;
   }

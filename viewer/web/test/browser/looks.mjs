@@ -1,8 +1,10 @@
 // Pictures of the looks, the themes and a phone, compared with those in docs/images/viewer.
 //
-//     node looks.mjs --url http://127.0.0.1:8080/ --images docs/images/viewer [--imagery] [--write]
+//     node looks.mjs --url http://127.0.0.1:8080/ --images docs/images/viewer
+//         [--imagery | --water] [--write]
 //
-// --imagery takes the look of a tileset with images alone; without it, all others.
+// --imagery takes the look of a tileset with images alone, --water those of Crater Lake; without them,
+// all others.
 // --write makes the pictures anew: look at each before you keep it. Fonts differ from machine to
 // machine: pictures are compared at a quarter of their size.
 import {mkdir, readFile, writeFile} from 'node:fs/promises';
@@ -15,6 +17,7 @@ const {values: options} = parseArgs({
     url: {type: 'string'},
     images: {type: 'string'},
     imagery: {type: 'boolean', default: false},
+    water: {type: 'boolean', default: false},
     write: {type: 'boolean', default: false},
     chromium: {type: 'string', default: '/usr/bin/chromium'},
   },
@@ -39,6 +42,17 @@ const kPictures = {
   dark: {set: {...kDay, look: 'relief', theme: 'dark', contours: true}},
   night: {set: {...kDay, look: 'relief', theme: 'dark', hour: 21}},
   phone: {set: {...kDay, look: 'relief'}, size: kPhone},
+};
+
+/** From the rim in the south, and from the east, where the sun goes down behind the lake. */
+const kOverLake = {eye: [3800, -1500, 3700], target: [-1300, 3300, 1900]};
+const kToTheWest = {eye: [7300, 6800, 2700], target: [-1500, 4400, 1800]};
+const kWater = {
+  water: {set: {...kDay, look: 'relief'}, camera: kOverLake},
+  water_slope: {set: {...kDay, look: 'slope', contours: true}, camera: kOverLake},
+  water_evening: {set: {...kDay, look: 'relief', hour: 17.8}, camera: kToTheWest},
+  water_dark: {set: {...kDay, look: 'relief', theme: 'dark'}, camera: kOverLake},
+  water_night: {set: {...kDay, look: 'relief', theme: 'dark', hour: 19.2}, camera: kToTheWest},
 };
 
 /** From the south, so that the nearest tiles are of the finest level. */
@@ -76,10 +90,11 @@ function compare(page, a, b) {
   );
 }
 
-async function look(page, name, {set, size = kWide}) {
+async function look(page, name, {set, size = kWide, camera}) {
   await page.setViewportSize(size);
   await page.evaluate((change) => window.terrane.set(change), set);
-  await page.evaluate((pose) => window.terrane.setPose(pose), await poseOver(page));
+  if (camera) await page.evaluate((place) => window.terrane.setCamera(place), camera);
+  else await page.evaluate((pose) => window.terrane.setPose(pose), await poseOver(page));
   await ready(page);
   await page.waitForTimeout(200);
   const shot = await page.screenshot({type: 'jpeg', quality: 70});
@@ -95,7 +110,8 @@ async function look(page, name, {set, size = kWide}) {
 async function run(context) {
   const {page} = await open(context, options.url, 1);
   if (options.write) await mkdir(options.images, {recursive: true});
-  for (const [name, picture] of Object.entries(options.imagery ? kImagery : kPictures)) {
+  const pictures = options.imagery ? kImagery : options.water ? kWater : kPictures;
+  for (const [name, picture] of Object.entries(pictures)) {
     // the panel folds itself on a small window, when it opens
     if (picture.size)
       await page.evaluate(() => (document.getElementById('panel-fold').open = false));
