@@ -19,6 +19,7 @@
 #include "tiler/tile/reference.h"
 #include "tiler/tile/tile_frame.h"
 #include "tiler/tile/tile_samples.h"
+#include "tiler/tile/triangles_in_water.h"
 
 namespace terrane::tiler {
 namespace {
@@ -368,35 +369,15 @@ FinerLevel leave_out(const std::vector<BorderPlace>& borders, const std::vector<
   return finer;
 }
 
-/// Tells for each triangle of a full-resolution mesh whether it lies in water; empty if none does.
-std::vector<std::uint8_t> triangles_in_water(const TileSource& source, const TileId& tile,
-                                             const hierarchy::LinedTriangles& full,
-                                             const std::vector<BorderPlace>& places) {
+std::vector<std::uint8_t> in_water_of(const TileSource& source, const TileId& leaf,
+                                      const hierarchy::LinedTriangles& full,
+                                      const std::vector<BorderPlace>& places) {
   if (source.features == nullptr) return {};
-  const TileFeatures& features = *source.features;
-  std::set<std::pair<double, double>> on_line;
-  for (const FeatureLine& line : features.lines_of(tile)) {
-    for (const GridPosition& p : line.points) on_line.emplace(p.column, p.row);
-  }
-  std::vector<std::uint8_t> in_water;
-  for (const Corners& corners : full.triangles) {
-    // a triangle that no line touches is where its samples are
-    const auto off_line = std::ranges::find_if(corners, [&](std::uint32_t v) {
-      return v < full.samples.size() && !on_line.contains({places[v].column, places[v].row});
-    });
-    if (off_line != corners.end()) {
-      in_water.push_back(std::isnan(features.water_m(full.samples[*off_line])) ? 0 : 1);
-      continue;
-    }
-    GridPosition middle{0, 0};
-    for (const std::uint32_t v : corners) {
-      middle.column += places[v].column / 3;
-      middle.row += places[v].row / 3;
-    }
-    in_water.push_back(features.water().hold(middle) ? 1 : 0);
-  }
-  if (std::ranges::count(in_water, 1) == 0) in_water.clear();
-  return in_water;
+  const auto is_water = [&](const SampleId& sample) {
+    return !std::isnan(source.features->water_m(sample));
+  };
+  return triangles_in_water(full, places, lines_of(source, leaf), is_water,
+                            source.features->water());
 }
 
 /// Lines were laid so that rounding turns none of their triangles over: see ingest/features.h.
@@ -421,17 +402,24 @@ std::span<const FeatureLine> lines_of(const TileSource& source, const TileId& le
   return source.features->lines_of(leaf);
 }
 
+hierarchy::WaterHeight water_of(const TileSource& source) {
+  if (source.features == nullptr) return {};
+  return [&areas = source.features->water()](const GridPosition& place) {
+    return areas.height_m(place);
+  };
+}
+
 BuiltTile build_leaf(const TileSource& source, const TileId& tile,
                      const std::vector<SeamChain>& seams, double tolerance_m) {
   TileBuild build(source, tile, 0);
   const TileSamples& samples = build.samples();
-  hierarchy::LinedTriangles full =
-      hierarchy::triangulate_with_lines(samples.whole(), samples.window(), lines_of(source, tile));
+  hierarchy::LinedTriangles full = hierarchy::triangulate_with_lines(
+      samples.whole(), samples.window(), lines_of(source, tile), water_of(source));
   if (full.triangles.empty()) return {};
 
   const std::vector<BorderPlace> places = places_of(full, samples.window());
   const std::vector<bool> boundary = hierarchy::boundary_vertices(places.size(), full.triangles);
-  std::vector<std::uint8_t> in_water = triangles_in_water(source, tile, full, places);
+  std::vector<std::uint8_t> in_water = in_water_of(source, tile, full, places);
   const FinerLevel finer = leave_out(places, seams, full.triangles, in_water);
   TerrainMesh mesh{{}, std::move(full.triangles), std::move(full.edges), std::move(in_water)};
   for (const SampleId& sample : full.samples) {

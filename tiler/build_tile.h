@@ -33,6 +33,9 @@ struct TileSource {
 /// What lines do in a leaf tile and on its border.
 std::span<const FeatureLine> lines_of(const TileSource& source, const TileId& leaf);
 
+/// The water between samples, if a data set has some.
+hierarchy::WaterHeight water_of(const TileSource& source);
+
 /// A tile and where the vertices of its children end in it.
 struct BuiltTile {
   TileMesh mesh;

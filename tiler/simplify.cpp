@@ -13,6 +13,7 @@
 #include "tiler/dem_size.h"
 #include "tiler/simplify_tiles.h"
 #include "tiler/tile/grid_census.h"
+#include "tiler/tile/water_areas.h"
 
 namespace terrane::tiler {
 namespace {
@@ -54,9 +55,12 @@ SampleField field_of(const HeightGrid& grid) {
 
 /// Every sample a vertex; those on the edge of the data are marked as outline, those on lines as
 /// feature.
-TerrainMesh full_terrain(const HeightGrid& grid, const std::vector<FeatureLine>& lines,
+TerrainMesh full_terrain(const HeightGrid& grid, const GridFeatures& features,
                          const hierarchy::Placer& placer) {
-  hierarchy::LinedTriangles full = hierarchy::triangulate_with_lines(grid, grid.window, lines);
+  const WaterAreas areas(features);
+  hierarchy::LinedTriangles full = hierarchy::triangulate_with_lines(
+      grid, grid.window, features.lines,
+      [&](const GridPosition& place) { return areas.height_m(place); });
   TerrainMesh terrain{{}, std::move(full.triangles), std::move(full.edges)};
   terrain.vertices.reserve(full.samples.size() + full.line_vertices.size());
   for (const hierarchy::SampleId& sample : full.samples) {
@@ -122,7 +126,7 @@ SimplifiedTerrain simplify_at_once(const HeightSource& heights, const SimplifyOp
   const GridShape shape = heights.shape();
   const HeightGrid grid = heights.read({0, 0, shape.columns, shape.rows});
   const FlatPlacer placer(options.height_steps_per_m);
-  const TerrainMesh full = full_terrain(grid, options.features.lines, placer);
+  const TerrainMesh full = full_terrain(grid, options.features, placer);
   if (full.triangles.empty()) refuse_empty();
 
   progress.begin("simplify", 1);

@@ -41,7 +41,8 @@ struct PlanOrder {
 
 class LinedMesh {
  public:
-  LinedMesh(const HeightGrid& grid, const Window& window) : grid_(grid), window_(window) {
+  LinedMesh(const HeightGrid& grid, const Window& window, const WaterHeight& water)
+      : grid_(grid), window_(window), water_(water) {
     GridTriangles full = triangulate(grid, window);
     result_.samples = std::move(full.vertices);
     plain_ = std::move(full.triangles);
@@ -244,7 +245,8 @@ class LinedMesh {
     return at->second;
   }
 
-  /// Of a point on a shore, or where another line has crossed one: rounding puts that beside it.
+  /// Of a point on a shore, or where another line has crossed one (rounding puts that beside it),
+  /// or in water.
   std::optional<double> water_height_m(GridPoint plan, const CellLines& cell) const {
     if (const auto known = shore_.find(plan); known != shore_.end()) return known->second;
     constexpr double kRounding = 2;
@@ -254,7 +256,10 @@ class LinedMesh {
       const auto area = static_cast<double>(orient2d(piece.from, piece.to, plan));
       if (piece.height_m && std::abs(area) <= kRounding * length) return piece.height_m;
     }
-    return std::nullopt;
+    // beside a shore the cell's triangle leads up from it
+    if (!water_) return std::nullopt;
+    return water_({static_cast<double>(window_.column) + column_of(plan),
+                   static_cast<double>(window_.row) + row_of(plan)});
   }
 
   /// The height at a point of the triangle that it lies in or on.
@@ -276,6 +281,7 @@ class LinedMesh {
 
   const HeightGrid& grid_;
   Window window_;
+  const WaterHeight& water_;
   LinedTriangles result_;
   std::vector<Corners> plain_;
   std::vector<std::uint32_t> number_;
@@ -288,12 +294,13 @@ class LinedMesh {
 }  // namespace
 
 LinedTriangles triangulate_with_lines(const HeightGrid& grid, const Window& window,
-                                      std::span<const FeatureLine> lines) {
+                                      std::span<const FeatureLine> lines,
+                                      const WaterHeight& water) {
   if (lines.empty()) {
     GridTriangles full = triangulate(grid, window);
     return {std::move(full.vertices), {}, std::move(full.triangles), {}};
   }
-  LinedMesh mesh(grid, window);
+  LinedMesh mesh(grid, window, water);
   for (const FeatureLine& line : lines) mesh.add(line);
   return mesh.finish();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,6 +22,9 @@ struct LineVertex {
 /// Two vertices that a line joins; the smaller number first.
 using LineEdge = std::array<std::uint32_t, 2>;
 
+/// The height of the water at a place of the DEM's grid that lies on no shore; nothing on land.
+using WaterHeight = std::function<std::optional<double>(const GridPosition&)>;
+
 /// A full-resolution mesh that holds lines as edges.
 struct LinedTriangles {
   std::vector<SampleId> samples;          ///< the first vertices
@@ -38,13 +42,15 @@ struct LinedTriangles {
 ///
 /// Every sample stays a vertex, so the mesh is as near to the samples as the one without lines is.
 /// Where a line crosses a side of a cell, its vertex is as high as that side; where it bends
-/// inside, as high as the triangle there; on a shore, as high as the water. Lines end where there
-/// is no triangle: with a vertex on the edge of the data that is no sample.
+/// inside, as high as the triangle there; on a shore and in water, as high as the water. Lines end
+/// where there is no triangle: with a vertex on the edge of the data that is no sample.
 ///
 /// \param lines  pieces beside the window do no harm.
+/// \param water  where there is some between the samples; none: shores alone are as high as water.
 /// \pre the window lies in grid.window; lines are laid on the grid (core/grid_features.h).
 LinedTriangles triangulate_with_lines(const HeightGrid& grid, const Window& window,
-                                      std::span<const FeatureLine> lines);
+                                      std::span<const FeatureLine> lines,
+                                      const WaterHeight& water = {});
 
 /// Where the vertices stand on the grid of the DEM.
 std::vector<BorderPlace> places_of(const LinedTriangles& full, const Window& window);

@@ -101,6 +101,7 @@ class LakeTiles(unittest.TestCase):
         status, said, _ = terrane("--quiet", "verify", out)
         self.assertEqual(status, 0, said)
         self.assertIn(" 0 samples at another height", said)
+        self.assertRegex(said, r"level +water +uneven +wrong_side\n +0 +\d{3,} +0 +0\n")
         lake = Lake(self.folder)
         for number, level in enumerate(json.loads((out / "terrane.json").read_text())["levels"]):
             mesh = self.folder / "level.obj"
@@ -113,6 +114,19 @@ class LakeTiles(unittest.TestCase):
 
     def test_from_twenty_metres_with_two_levels_per_octave(self):
         self.check(20, "--levels-per-octave", 2)
+
+    def test_water_is_told_from_land_in_every_format(self):
+        triangles = set()
+        for options in ("--compression none --skirts auto", "--compression draco --colour slope",
+                        "--positions float --implicit --skirts 50"):
+            out, _ = self.build("--tolerance", 20, "--force", *options.split())
+            report = self.folder / "report.json"
+            status, said, _ = terrane("--quiet", "verify", out, "--json", report)
+            self.assertEqual(status, 0, said)
+            levels = json.loads(report.read_text())["levels"]
+            triangles.add(tuple(level["water_triangles"] for level in levels))
+        self.assertEqual(len(triangles), 1, triangles)
+        self.assertGreater(min(triangles.pop()), 100)
 
     def test_another_shore_in_the_same_file_builds_again(self):
         shore = self.folder / "shore.geojson"

@@ -397,8 +397,8 @@ SeamChain build_leaf_seam(const TileSource& source, const SeamId& seam, double t
   std::vector<std::vector<double>> heights_m;
   const TileId tiles[] = {seam.first, seam.second()};
   for (std::size_t k = 0; k < 2; ++k) {
-    hierarchy::LinedTriangles full =
-        hierarchy::triangulate_with_lines(grid, sides[k], lines_of(source, tiles[k]));
+    hierarchy::LinedTriangles full = hierarchy::triangulate_with_lines(
+        grid, sides[k], lines_of(source, tiles[k]), water_of(source));
     TileMesh& mesh = meshes.emplace_back();
     mesh.borders = places_of(full, sides[k]);
     mesh.points.resize(mesh.borders.size());

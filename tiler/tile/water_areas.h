@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "core/grid_features.h"
@@ -13,9 +14,10 @@ class WaterAreas {
  public:
   explicit WaterAreas(const GridFeatures& features);
 
-  /// Does a place lie in a body of water? Even-odd for each body, so its islands are left out.
+  /// The height of the water at a place; nothing on land. Even-odd for each body, so its islands
+  /// are left out. Where bodies overlap, the later one tells.
   /// \pre it lies on no shore.
-  bool hold(const GridPosition& place) const;
+  std::optional<double> height_m(const GridPosition& place) const;
 
  private:
   struct Side {
@@ -24,6 +26,7 @@ class WaterAreas {
   };
 
   std::map<std::int64_t, std::vector<Side>> sides_;  ///< by row of cells, body by body
+  std::vector<double> heights_m_;                    ///< of the bodies
 };
 
 }  // namespace terrane::tiler

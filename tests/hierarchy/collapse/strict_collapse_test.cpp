@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "tests/hierarchy/test_meshes.h"
@@ -199,6 +200,44 @@ TEST_P(RandomTerrain, StaysWithinTheBoundCoversEverySampleAndFoldsNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomTerrain, ::testing::Range(0U, 300U));
+
+TEST(StrictCollapse, WhatIsMarkedAsWaterStaysOnItsSideOfTheShore) {
+  // columns 0 to 12 are water, the shore runs along column 12; all is flat
+  const HeightGrid grid = grid_of(25, 25, [](auto, auto) { return 0; });
+  TerrainMesh input = terrain_of(grid);
+  const auto column = [](const TerrainMesh& mesh, std::uint32_t v) {
+    return mesh.vertices[v].place.plan.x / double{kUnitsPerCell};
+  };
+  for (const Corners& corners : input.triangles) {
+    const bool is_wet =
+        std::ranges::all_of(corners, [&](std::uint32_t v) { return column(input, v) <= 12; });
+    input.in_water.push_back(is_wet ? 1 : 0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = corners[k], b = corners[(k + 1) % 3];
+      if (a < b && column(input, a) == 12 && column(input, b) == 12) input.lines.push_back({a, b});
+    }
+  }
+  for (const LineEdge& edge : input.lines) {
+    for (const std::uint32_t v : edge) {
+      VertexKind& kind = input.vertices[v].kind;
+      kind = kind == VertexKind::kOutline ? VertexKind::kLocked : VertexKind::kFeature;
+    }
+  }
+  const ExactPlacer placer;
+  const SampleField field = field_of(grid);
+  const TerrainMesh mesh =
+      collapse_strictly(input, field, placer, {},
+                        {.tolerance_m = 1, .effort = kTopEffort, .lines = {0.1, 1, 1}})
+          .mesh;
+  EXPECT_LT(mesh.triangles.size(), input.triangles.size() / 10);
+  ASSERT_EQ(mesh.in_water.size(), mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      if (mesh.in_water[t] == 1) EXPECT_LE(column(mesh, v), 12);
+      if (mesh.in_water[t] == 0) EXPECT_GE(column(mesh, v), 12);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace terrane::hierarchy

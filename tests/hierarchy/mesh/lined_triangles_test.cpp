@@ -151,5 +151,27 @@ TEST(TriangulateWithLines, TwoWindowsThatShareABorderHaveTheSameVerticesOnIt) {
   EXPECT_TRUE(on_border[0].count({4, 1.5, 7}));
 }
 
+TEST(TriangulateWithLines, ALineThatGoesIntoWaterBesideItsShoreIsAsHighAsTheWater) {
+  // water at 0 m beyond the shore at column 1.25; samples on land are 10 m high
+  const HeightGrid grid = grid_of(4, 4, [](auto c, auto) { return c < 2 ? 10.0 : 0.0; });
+  FeatureLine shore{{}, 0.0};
+  for (double row = 0; row <= 3; ++row) shore.points.push_back({1.25, row});
+  // bends in the shore's cell, and passes the side of the next cell in between
+  const FeatureLine line{{{1, 1.25}, {1.25, 1.375}, {1.5, 1.5}, {1.625, 2}, {1.75, 2.5}, {2, 2.5}},
+                         {}};
+  const FeatureLine lines[] = {shore, line};
+  const auto water = [](const GridPosition& p) {
+    return p.column > 1.25 ? std::optional<double>(0) : std::nullopt;
+  };
+  const LinedTriangles mesh = triangulate_with_lines(grid, grid.window, lines, water);
+  int in_water = 0;
+  for (const LineVertex& vertex : mesh.line_vertices) {
+    if (column_of(vertex.plan) < 1.25) continue;
+    EXPECT_EQ(vertex.height_m, 0) << column_of(vertex.plan);
+    ++in_water;
+  }
+  EXPECT_GE(in_water, 4 + 3);
+}
+
 }  // namespace
 }  // namespace terrane::hierarchy

@@ -6,8 +6,8 @@ namespace terrane::tiler {
 namespace {
 
 /// A square shore laid on the grid: a point at each crossing with a column or row.
-FeatureLine square(int left, int top, int side) {
-  FeatureLine line{{}, 100.0};
+FeatureLine square(int left, int top, int side, double height_m = 100) {
+  FeatureLine line{{}, height_m};
   const int steps[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
   int x = left, y = top;
   for (const auto& [dx, dy] : steps) {
@@ -37,34 +37,36 @@ WaterAreas areas(std::vector<FeatureLine> lines, std::vector<std::size_t> shores
 
 TEST(WaterAreas, HoldWhatIsInsideAShore) {
   const WaterAreas lake = areas({square(2, 2, 6)}, {1});
-  EXPECT_TRUE(lake.hold({2.3, 2.3}));
-  EXPECT_TRUE(lake.hold({8.2, 8.2}));
-  EXPECT_FALSE(lake.hold({2.2, 5}));
-  EXPECT_FALSE(lake.hold({8.3, 5}));
-  EXPECT_FALSE(lake.hold({5, 2.2}));
-  EXPECT_FALSE(lake.hold({5, 8.3}));
-  EXPECT_FALSE(lake.hold({5, 1000}));
+  EXPECT_TRUE(lake.height_m({2.3, 2.3}));
+  EXPECT_TRUE(lake.height_m({8.2, 8.2}));
+  EXPECT_FALSE(lake.height_m({2.2, 5}));
+  EXPECT_FALSE(lake.height_m({8.3, 5}));
+  EXPECT_FALSE(lake.height_m({5, 2.2}));
+  EXPECT_FALSE(lake.height_m({5, 8.3}));
+  EXPECT_FALSE(lake.height_m({5, 1000}));
 }
 
 TEST(WaterAreas, LeaveIslandsOutAndHoldTheLakesOnThem) {
   const WaterAreas lakes = areas({square(0, 0, 12), square(2, 2, 8), square(4, 4, 3)}, {2, 1});
-  EXPECT_TRUE(lakes.hold({1, 6})) << "between shore and island";
-  EXPECT_FALSE(lakes.hold({3, 6})) << "on the island";
-  EXPECT_TRUE(lakes.hold({5, 6})) << "in the lake on the island";
-  EXPECT_FALSE(lakes.hold({8, 6}));
-  EXPECT_TRUE(lakes.hold({11, 6}));
+  EXPECT_TRUE(lakes.height_m({1, 6})) << "between shore and island";
+  EXPECT_FALSE(lakes.height_m({3, 6})) << "on the island";
+  EXPECT_TRUE(lakes.height_m({5, 6})) << "in the lake on the island";
+  EXPECT_FALSE(lakes.height_m({8, 6}));
+  EXPECT_TRUE(lakes.height_m({11, 6}));
 }
 
-TEST(WaterAreas, WhereTwoBodiesOverlapThereIsWater) {
-  const WaterAreas lakes = areas({square(0, 0, 6), square(3, 3, 6)}, {1, 1});
-  EXPECT_TRUE(lakes.hold({1, 1}));
-  EXPECT_TRUE(lakes.hold({4, 4}));
-  EXPECT_TRUE(lakes.hold({8, 8}));
-  EXPECT_FALSE(lakes.hold({8, 1}));
+TEST(WaterAreas, WhereTwoBodiesOverlapTheLaterOneTellsItsHeight) {
+  const WaterAreas lakes = areas({square(0, 0, 6), square(3, 3, 6, 70)}, {1, 1});
+  EXPECT_EQ(lakes.height_m({1, 1}), 100);
+  EXPECT_EQ(lakes.height_m({4, 4}), 70);
+  EXPECT_TRUE(lakes.height_m({1, 1}));
+  EXPECT_TRUE(lakes.height_m({4, 4}));
+  EXPECT_TRUE(lakes.height_m({8, 8}));
+  EXPECT_FALSE(lakes.height_m({8, 1}));
 }
 
 TEST(WaterAreas, LinesThatAreNoShoresHoldNothing) {
-  EXPECT_FALSE(areas({square(0, 0, 6)}, {}).hold({3, 3}));
+  EXPECT_FALSE(areas({square(0, 0, 6)}, {}).height_m({3, 3}));
 }
 
 }  // namespace
