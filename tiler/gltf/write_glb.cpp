@@ -164,8 +164,8 @@ class Document {
     material["name"] = "water";
     ordered_json& surface = material["pbrMetallicRoughness"];
     if (!tile_.texture.is_there()) surface["baseColorFactor"] = {0.03, 0.12, 0.22, 1};
-    finish(material);
     surface["roughnessFactor"] = kRoughness;
+    finish(material);
     return material;
   }
 

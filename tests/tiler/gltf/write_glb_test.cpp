@@ -166,6 +166,24 @@ TEST(EncodeGlb, WaterIsASecondPrimitiveOnTheSameVerticesWithAMaterialOfItsOwn) {
   EXPECT_LT(water["pbrMetallicRoughness"]["roughnessFactor"], 0.5);
 }
 
+TEST(EncodeGlb, UnlitWaterWithAPictureShowsThePicture) {
+  const TileMesh mesh = shore();
+  GlbTile tile = tile_of(mesh);
+  tile.texture = {.bytes = "jpeg", .media_type = "image/jpeg", .columns_px = 2, .rows_px = 2};
+  tile.texture.window = {0, 0, 2, 2};
+  const auto json = json_of(encode_glb(tile, {.material = Material::kUnlit}));
+  ASSERT_EQ(json["materials"].size(), 2U);
+  for (const auto& material : json["materials"]) {
+    EXPECT_EQ(material["pbrMetallicRoughness"]["baseColorTexture"]["index"], 0);
+    EXPECT_FALSE(material["pbrMetallicRoughness"].contains("baseColorFactor"));
+    EXPECT_TRUE(material["extensions"].contains("KHR_materials_unlit"));
+  }
+  EXPECT_TRUE(json["materials"][1]["pbrMetallicRoughness"].contains("roughnessFactor"));
+  for (const auto& primitive : json["meshes"][0]["primitives"]) {
+    EXPECT_TRUE(primitive["attributes"].contains("TEXCOORD_0"));
+  }
+}
+
 TEST(EncodeGlb, WaterLooksUpEverywhereAlsoOnAShoreThatDoesNot) {
   const TileMesh mesh = shore();
   const std::string glb = encode_glb(tile_of(mesh), {.compression = Compression::kNone});
