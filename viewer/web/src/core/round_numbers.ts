@@ -15,11 +15,14 @@ export function roundAbove(value: number): number {
   return digit === 2 ? below * 2.5 : below * 2;
 }
 
+/** Made once: that takes as long as many numbers do. */
+const kEnglish = new Intl.NumberFormat('en');
+
 /** Metres, or kilometres from a thousand on. */
 export function lengthText(metres: number): string {
   const [value, unit] = Math.abs(metres) >= 1000 ? [metres / 1000, 'km'] : [metres, 'm'];
   const digits = Math.abs(value) >= 100 ? 0 : Math.abs(value) >= 10 ? 1 : 2;
-  return `${Number(value.toFixed(digits)).toLocaleString('en')} ${unit}`;
+  return `${kEnglish.format(Number(value.toFixed(digits)))} ${unit}`;
 }
 
 /** Bytes as people say them. */

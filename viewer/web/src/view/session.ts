@@ -24,6 +24,7 @@ export class Session {
   private readonly prefersDark = matchMedia('(prefers-color-scheme: dark)');
   private cursor: {right: number; up: number} | undefined;
   private linkTimer = 0;
+  private linkAtMs = 0;
   private offersImagery: boolean | undefined;
   private namesWater = false;
   /** Whether the look is the user's, or that of a permalink. */
@@ -196,13 +197,21 @@ export class Session {
 
   /** Keeps the address up to date, but not at every frame: browsers refuse that. */
   private linkSoon(): void {
-    clearTimeout(this.linkTimer);
-    this.linkTimer = window.setTimeout(() => {
-      const {navigation} = this.viewer;
-      const pose = navigation.hasMoved ? {pose: navigation.pose} : {};
-      const text = writePermalink({settings: this.settings, ...pose});
-      if (text !== location.hash.slice(1)) history.replaceState(null, '', `#${text}`);
-    }, kLinkDelayMs);
+    this.linkAtMs = performance.now() + kLinkDelayMs;
+    if (this.linkTimer === 0) this.linkLater();
+  }
+
+  private linkLater(): void {
+    const waitMs = this.linkAtMs - performance.now();
+    if (waitMs > 0) {
+      this.linkTimer = window.setTimeout(() => this.linkLater(), waitMs);
+      return;
+    }
+    this.linkTimer = 0;
+    const {navigation} = this.viewer;
+    const pose = navigation.hasMoved ? {pose: navigation.pose} : {};
+    const text = writePermalink({settings: this.settings, ...pose});
+    if (text !== location.hash.slice(1)) history.replaceState(null, '', `#${text}`);
   }
 
   private onHashChange(): void {

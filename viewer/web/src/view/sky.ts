@@ -2,7 +2,7 @@ import {BufferAttribute, BufferGeometry, Matrix4, Mesh, ShaderMaterial, type Cam
 import {kSkyColor} from './terrain_shader';
 import type {SharedUniforms} from './terrain_material';
 
-// one triangle over the whole picture, behind everything
+// one triangle over the whole picture, behind everything: drawn last, only where no terrain is
 const kVertexShader = /* glsl */ `
   uniform mat4 toWorld;
   varying vec3 vDirection;
@@ -37,12 +37,11 @@ export class Sky {
       vertexShader: kVertexShader,
       fragmentShader: kFragmentShader,
       uniforms: {horizon, zenith, sun, sunlight, sunGlow, toWorld: {value: this.toWorld}},
-      depthTest: false,
       depthWrite: false,
     });
     this.mesh = new Mesh(geometry, material);
     this.mesh.frustumCulled = false;
-    this.mesh.renderOrder = -1;
+    this.mesh.renderOrder = Infinity;
   }
 
   /** @param camera at the place and with the lens of the picture */

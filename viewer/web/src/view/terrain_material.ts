@@ -1,4 +1,15 @@
-import {Color, ShaderMaterial, Texture, Vector2, Vector3, Vector4, type IUniform} from 'three';
+import {
+  Color,
+  DataTexture,
+  FloatType,
+  RGBAFormat,
+  ShaderMaterial,
+  Texture,
+  Vector2,
+  Vector3,
+  Vector4,
+  type IUniform,
+} from 'three';
 import type {Daylight} from '../core/daylight';
 import {kMostHoldbacks} from '../core/holdback';
 import type {ImageMap} from '../core/image_map';
@@ -26,8 +37,7 @@ export function sharedUniforms({minHeightM, maxHeightM, curved, levels, cellM}: 
     /** Heights are drawn this many times as high. */
     exaggeration: {value: 1},
     holdbackCount: {value: 0},
-    holdbackCenters: {value: vectors(() => new Vector4())},
-    holdbackHalves: {value: vectors(() => new Vector3())},
+    holdbacks: {value: holdbackTexture()},
     heightsM: {value: new Vector2(minHeightM, Math.max(maxHeightM, minHeightM + 1))},
     /** 1 / (2 R) of the Earth, or 0: how far the world falls below its tangent plane. */
     dropPerM: {value: curved ? 1 / (2 * kEarthRadiusM) : 0},
@@ -53,8 +63,13 @@ export function sharedUniforms({minHeightM, maxHeightM, curved, levels, cellM}: 
   };
 }
 
-function vectors<T>(make: () => T): T[] {
-  return Array.from({length: kMostHoldbacks}, make);
+/**
+ * A column for each holdback: its centre and height; its half sizes. Arrays of uniforms would be handed over anew
+ * for every tile.
+ */
+function holdbackTexture(): DataTexture {
+  const texels = new Float32Array(2 * 4 * kMostHoldbacks);
+  return new DataTexture(texels, kMostHoldbacks, 2, RGBAFormat, FloatType);
 }
 
 export function setDaylight(shared: SharedUniforms, light: Daylight, glow: number): void {
@@ -66,10 +81,14 @@ export function setDaylight(shared: SharedUniforms, light: Daylight, glow: numbe
 
 export function setHoldbacks(shared: SharedUniforms, holdbacks: readonly HoldbackUniform[]): void {
   shared.holdbackCount.value = holdbacks.length;
+  if (holdbacks.length === 0) return;
+  const texture = shared.holdbacks.value;
+  const texels = texture.image.data as Float32Array;
   holdbacks.forEach(({centerM, halfM, heightM}, i) => {
-    shared.holdbackCenters.value[i]!.set(...centerM, heightM);
-    shared.holdbackHalves.value[i]!.fromArray(halfM);
+    texels.set([...centerM, heightM], 4 * i);
+    texels.set(halfM, 4 * (kMostHoldbacks + i));
   });
+  texture.needsUpdate = true;
 }
 
 /** What lies on the terrain of a tile. */

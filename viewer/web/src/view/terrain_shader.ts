@@ -13,8 +13,7 @@ const kPlace = /* glsl */ `
   uniform float perM;
   uniform float exaggeration;
   uniform int holdbackCount;
-  uniform vec4 holdbackCenters[${kMostHoldbacks}];
-  uniform vec3 holdbackHalves[${kMostHoldbacks}];
+  uniform highp sampler2D holdbacks;
 
   vec3 zUp(vec3 v) {
     return vec3(v.x, -v.z, v.y);
@@ -24,8 +23,10 @@ const kPlace = /* glsl */ `
     float distanceM = distance(base, eyeM);
     for (int i = 0; i < ${kMostHoldbacks}; ++i) {
       if (i >= holdbackCount) break;
-      vec3 beside = max(abs(base - holdbackCenters[i].xyz) - holdbackHalves[i], 0.0);
-      distanceM = max(distanceM, holdbackCenters[i].w - length(beside));
+      vec4 center = texelFetch(holdbacks, ivec2(i, 0), 0);
+      vec3 halfM = texelFetch(holdbacks, ivec2(i, 1), 0).xyz;
+      vec3 beside = max(abs(base - center.xyz) - halfM, 0.0);
+      distanceM = max(distanceM, center.w - length(beside));
     }
     return distanceM;
   }
@@ -111,8 +112,10 @@ export const kSkyColor = /* glsl */ `
     // below the horizon there is no ground: a calm backdrop for terrain seen from above
     vec3 below = mix(zenith, horizon, 0.45);
     float up = max(direction.z, 0.0);
-    vec3 color = mix(horizon, zenith, 1.0 - pow(1.0 - up, 3.0));
+    float down = 1.0 - up;
+    vec3 color = mix(zenith, horizon, down * down * down);
     color = mix(color, below, smoothstep(0.0, 0.75, -direction.z));
+    if (sunGlow == 0.0) return color;
     float glow = max(dot(direction, sun), 0.0);
     return color + sunGlow * sunlight * (0.25 * pow(glow, 12.0) + 0.5 * pow(glow, 400.0));
   }
@@ -234,9 +237,11 @@ export const kFragmentShader = /* glsl */ `
       float line = mix(contour(contours.x), contour(contours.y), contours.z);
       color = mix(color, color * vec3(0.42, 0.3, 0.2), contourStrength * relief() * line);
     }
-    float far = length(vFromEyeM) * hazePerM;
-    vec3 direction = normalize(vFromEyeM);
-    color = mix(skyColor(vec3(direction.xy, max(direction.z, 0.0))), color, exp(-far * far));
+    if (hazePerM > 0.0) {
+      float far = length(vFromEyeM) * hazePerM;
+      vec3 direction = normalize(vFromEyeM);
+      color = mix(skyColor(vec3(direction.xy, max(direction.z, 0.0))), color, exp(-far * far));
+    }
     gl_FragColor = vec4(color, 1.0);
   }
 `;

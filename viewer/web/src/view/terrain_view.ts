@@ -145,13 +145,12 @@ export class TerrainView {
     const isInPicture = this.pictureTest();
     const levels: Record<number, number> = {};
     let [tiles, triangles] = [0, 0];
-    for (const tile of frame.cut) {
-      if (!isInPicture(tile.box)) continue;
+    for (const tile of nearestFirst(frame.cut.filter(({box}) => isInPicture(box)), frame.eye)) {
       const content = contentOf(tile);
       const parent = tile.parent ? contentOf(tile.parent) : undefined;
       completeTargets(content, parent);
       if (content.hasDrape) lendImage(content, parent);
-      this.show(content, this.uniformsOf(tile, content, frame));
+      this.show(content, tiles, this.uniformsOf(tile, content, frame));
       ++tiles;
       triangles += content.triangles;
       levels[tile.level] = (levels[tile.level] ?? 0) + 1;
@@ -179,7 +178,7 @@ export class TerrainView {
     return morphUniforms(place, frame.ranges, eyeM, this.originM, this.holdbacks);
   }
 
-  private show(content: TileContent, uniforms: MorphUniforms): void {
+  private show(content: TileContent, order: number, uniforms: MorphUniforms): void {
     const shown: Object3D[] = [content.mesh];
     if (this.overlays.triangles) shown.push(triangleLines(content));
     if (this.overlays.borders) shown.push(borderLines(content));
@@ -187,9 +186,18 @@ export class TerrainView {
       if (!object.parent) this.scene.add(object);
       object.visible = true;
     }
+    content.mesh.renderOrder = order;
     for (const material of materialsOf(content.mesh)) material.polygonOffset = shown.length > 1;
     setMorph(content.material, uniforms);
   }
+}
+
+/** Fewer pixels are shaded that others hide. */
+function nearestFirst(tiles: readonly Tile[], eye: Vec3): Tile[] {
+  return tiles
+    .map((tile) => ({tile, awayM: distanceToBox(tile.box, eye)}))
+    .sort((a, b) => a.awayM - b.awayM)
+    .map(({tile}) => tile);
 }
 
 /** Whether a box, seen from the render origin, is not all behind a plane. */

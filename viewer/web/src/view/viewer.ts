@@ -150,12 +150,16 @@ export class Viewer {
   stats(): ViewerStats {
     const {failures, requests, cachedBytes} = this.streamer;
     const {frame} = this;
+    const shownTolerancePx = () => this.shownTolerancePx();
     return {
       ...this.drawn,
       failed: failures.size,
       requests,
       cachedBytes,
-      shownTolerancePx: this.shownTolerancePx(),
+      // worked out for those who read it only: all boxes are looked at for it
+      get shownTolerancePx() {
+        return shownTolerancePx();
+      },
       loadedShare: frame ? frame.loaded / frame.wanted : 0,
       holdbacks: frame?.holdbacks.length ?? 0,
       tileMs: this.tilesMs / Math.max(1, this.tilesMade),
@@ -183,10 +187,10 @@ export class Viewer {
 
   /** Draws now; the canvas can be read until the current task ends. */
   redraw(elapsedS = 0): Frame {
-    this.surfaceOfFrame = undefined;
     const isTurning = this.navigation.step(elapsedS);
     const {exaggeration} = this.settings;
     this.view.aim(this.navigation.pose, exaggeration, this.navigation.heightOverGround());
+    this.surfaceOfFrame = undefined; // it counts from the render origin
     this.view.shared.errorPerM.value = this.pixelScale() / this.settings.tolerancePx;
     this.showContours();
     const frame = this.update();
@@ -316,7 +320,8 @@ export class Viewer {
   }
 
   private retryLater(): void {
-    clearTimeout(this.retryTimer);
+    if (this.retryTimer !== 0) clearTimeout(this.retryTimer);
+    this.retryTimer = 0;
     const waitS = this.streamer.nextRetryS - performance.now() / 1000;
     if (Number.isFinite(waitS)) {
       this.retryTimer = window.setTimeout(() => this.invalidate(), 1000 * Math.max(0, waitS) + 10);

@@ -1,7 +1,7 @@
 import {describe, expect, it} from 'vitest';
 import {Surface, type ShownTile} from '../../src/core/surface';
 import type {Tile} from '../../src/core/tileset';
-import type {Vec3} from '../../src/core/vec3';
+import {length, subtract, type Vec3} from '../../src/core/vec3';
 import {quadtree} from './quadtree';
 import {randomSource} from './random';
 
@@ -70,4 +70,71 @@ describe('Surface', () => {
     expect(point.place[0]).toBeCloseTo((0.6 * 300) / 0.86, 6);
     expect(surface(0).hit([0, 500, 400], [0, 0, 1])).toBeUndefined();
   });
+
+  it('leaves out no triangle of a large mesh, wherever its vertices are on their way', () => {
+    const bumpy = bumps();
+    const surfaceOf = (shown: ShownTile) => new Surface([tile], [0, 0, 0], () => shown);
+    const random = randomSource(2);
+    let hits = 0;
+    for (let i = 0; i < 300; ++i) {
+      const eye: Vec3 = [1000 * random(), 1000 * random(), 300];
+      const direction: Vec3 = i % 2 ? [0, 0, -1] : [random() - 0.5, random() - 0.5, -0.3 * random()];
+      // each triangle a mesh of its own: the least of all hits
+      const alone = bumpy.map((one) => surfaceOf(one).hit(eye, direction)?.place);
+      const away = (place?: Vec3) => (place ? length(subtract(place, eye)) : Infinity);
+      const nearest = Math.min(...alone.map(away));
+      const found = surfaceOf(joined(bumpy)).hit(eye, direction)?.place;
+      if (nearest === Infinity) expect(found).toBeUndefined();
+      else expect(away(found)).toBeCloseTo(nearest, 9);
+      if (found) ++hits;
+    }
+    expect(hits).toBeGreaterThan(150);
+  });
 });
+
+/** 200 triangles, each as a mesh, on a grid whose vertices have moved by different shares of long ways. */
+function bumps(): ShownTile[] {
+  const random = randomSource(3);
+  const {uniforms} = shown(0.5);
+  const corner = new Map<string, {at: number[]; to: number[]}>();
+  const cornerAt = (x: number, y: number) => {
+    const key = `${x} ${y}`;
+    if (!corner.has(key)) {
+      const to = [40 * random() - 20, 200 * random() - 100, 40 * random() - 20];
+      corner.set(key, {at: [100 * x, 100 * random(), -100 * y], to});
+    }
+    return corner.get(key)!;
+  };
+  const ofCorners = (places: readonly (readonly [number, number])[]): ShownTile => {
+    const corners = places.map(([x, y]) => cornerAt(x, y));
+    return {
+      tile,
+      positions: corners.flatMap(({at}) => at),
+      toTargets: corners.flatMap(({to}) => to),
+      indices: [0, 1, 2],
+      uniforms: {...uniforms, eyeM: [0, 0, 0], beginM: 0, perM: 1 / 1500},
+    };
+  };
+  const cells = [...Array(100).keys()].map((i) => [i % 10, Math.floor(i / 10)] as const);
+  return cells.flatMap(([x, y]) => [
+    ofCorners([
+      [x, y],
+      [x + 1, y],
+      [x, y + 1],
+    ]),
+    ofCorners([
+      [x, y + 1],
+      [x + 1, y],
+      [x + 1, y + 1],
+    ]),
+  ]);
+}
+
+function joined(tiles: readonly ShownTile[]): ShownTile {
+  return {
+    ...tiles[0]!,
+    positions: tiles.flatMap(({positions}) => Array.from(positions)),
+    toTargets: tiles.flatMap(({toTargets}) => Array.from(toTargets)),
+    indices: tiles.flatMap((_, i) => [3 * i, 3 * i + 1, 3 * i + 2]),
+  };
+}
