@@ -62,6 +62,13 @@ class Geodetic(unittest.TestCase):
         self.assertEqual(status, 0, said)
         self.assertEqual(bytes_below(self.folder / "killed"), bytes_below(self.folder / "whole"))
 
+    def test_a_build_that_was_killed_as_it_tidied_up_is_tidied_up(self):
+        self.build("out")
+        (self.folder / "out/.work").mkdir()
+        (self.folder / "out/.work/key").write_text("0123456789abcdef")
+        self.assertIn("up to date", self.build("out")[1])
+        self.assertFalse((self.folder / "out/.work").exists())
+
     def test_every_zoom_is_within_its_tolerance_and_info_tells(self):
         self.build("out")
         summary = json.loads((self.folder / "out/terrane.json").read_text())

@@ -173,7 +173,16 @@ class Bend {
     for (int j = 1; j < kProbes; ++j) {
       for (int i = 1; i < kProbes; ++i) add(frame, columns * i / kProbes, rows * j / kProbes, u, v);
     }
+    const auto is_a_point = [&](double row) {
+      const Eigen::Vector3d along = frame.plumb(columns, row).base - frame.plumb(0, row).base;
+      return along.norm() < kShareAtPole * columns * frame.spacing_m();
+    };
+    meets_pole_ = is_a_point(0) || is_a_point(rows);
   }
+
+  /// Is one of the tile's border rows a single place? Triangles there have other samples than over
+  /// the grid, or none.
+  bool meets_pole() const { return meets_pole_; }
 
   /// The most that an edge of so many columns and rows may lie beside, in cells.
   double cells(double columns, double rows) const {
@@ -185,6 +194,7 @@ class Bend {
 
  private:
   static constexpr int kProbes = 6;
+  static constexpr double kShareAtPole = 0.001;
 
   void add(const TileFrame& frame, double column, double row, double u, double v) {
     const Eigen::Vector3d up = frame.plumb(column, row).up;
@@ -202,6 +212,7 @@ class Bend {
   }
 
   double columns_ = 0, both_ = 0, rows_ = 0;  // largest second derivatives, 1 / cell
+  bool meets_pole_ = false;
 };
 
 /// The errors of one mesh at the samples of one patch.
@@ -228,7 +239,7 @@ class Measurement {
     for_each_span(p, q, r, shape_, slack_cells,
                   [&](std::int64_t row, std::int64_t first, std::int64_t last) {
                     const auto [begin, end] = inner.of_row(row, first, last);
-                    if (end - begin < kFewColumns) {
+                    if (end - begin < kFewColumns || bend_.meets_pole()) {
                       add_one_by_one(triangle, row, first, last);
                     } else {
                       add_one_by_one(triangle, row, first, begin - 1);
