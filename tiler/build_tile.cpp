@@ -66,7 +66,7 @@ void raise(const std::vector<SeamChain>& seams, const std::vector<SampleId>& sam
   for (const SeamChain& seam : seams) {
     for (const SeamVertex& vertex : seam) {
       if (std::isnan(vertex.height_m)) continue;
-      raised_m[{vertex.onto.column, vertex.onto.row}] = vertex.height_m;
+      raised_m[{vertex.at.column, vertex.at.row}] = vertex.height_m;
     }
   }
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -342,7 +342,7 @@ class SeamVertices {
 
 /// Takes the vertices out of a tile that its seams leave out: as their triangles' corners become
 /// others, those that lose one vanish.
-FinerLevel leave_out(const std::vector<BorderPlace>& borders, const std::vector<SeamChain>& seams,
+FinerLevel leave_out(std::vector<BorderPlace>& borders, const std::vector<SeamChain>& seams,
                      std::vector<Corners>& triangles, std::vector<std::uint8_t>& in_water) {
   const SeamVertices seam_vertices(borders, seams);
   FinerLevel finer{.places = {}, .triangles = triangles, .target = {}};
@@ -352,6 +352,7 @@ FinerLevel leave_out(const std::vector<BorderPlace>& borders, const std::vector<
       const auto from = seam_vertices.find(vertex.from), to = seam_vertices.find(vertex.onto);
       // where only the neighbour has triangles, there is nothing to take out
       if (from && to) finer.target[*from] = *to;
+      if (to) borders[*to] = vertex.at;
     }
   }
   for (Corners& corners : triangles) {
@@ -417,7 +418,7 @@ BuiltTile build_leaf(const TileSource& source, const TileId& tile,
       samples.whole(), samples.window(), lines_of(source, tile), water_of(source));
   if (full.triangles.empty()) return {};
 
-  const std::vector<BorderPlace> places = places_of(full, samples.window());
+  std::vector<BorderPlace> places = places_of(full, samples.window());
   const std::vector<bool> boundary = hierarchy::boundary_vertices(places.size(), full.triangles);
   std::vector<std::uint8_t> in_water = in_water_of(source, tile, full, places);
   const FinerLevel finer = leave_out(places, seams, full.triangles, in_water);

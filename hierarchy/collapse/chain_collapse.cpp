@@ -14,6 +14,9 @@ namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
+// two vertices become one at the samples nearest to the quarters of the way between them, too
+constexpr int kPartsOfEdge = 4;
+
 FieldPoint field_point(const Place& place) {
   return {column_of(place.plan), row_of(place.plan), place.height_m};
 }
@@ -129,12 +132,14 @@ struct Candidate {
   std::uint32_t gone, onto;
   std::uint32_t version, version_onto;  // of their surroundings
   Place place;                          // where onto is written then
+  BorderPlace at;                       // the same, on the line
   double raised_m;                      // the height wished for it; NaN: as it is
 
   /// Is it to be done later?
   bool operator<(const Candidate& other) const {
-    return std::tie(other.worst_m, altitude2, other.gone, other.onto) <
-           std::tie(worst_m, other.altitude2, gone, onto);
+    const auto along = [](const Candidate& c) { return c.at.column + c.at.row; };
+    return std::tuple(other.worst_m, altitude2, other.gone, other.onto, along(other)) <
+           std::tuple(worst_m, other.altitude2, gone, onto, along(*this));
   }
 };
 
@@ -176,7 +181,10 @@ class ChainCollapse {
       if (is_fresh && blends(next)) collapse(next);
     }
     follow_targets();
-    for (const TerrainVertex& vertex : vertices_) result_.places.push_back(vertex.place);
+    for (const TerrainVertex& vertex : vertices_) {
+      result_.places.push_back(vertex.place);
+      result_.borders.push_back(vertex.border);
+    }
     return std::move(result_);
   }
 
@@ -214,12 +222,42 @@ class ChainCollapse {
                                : placer_.is_straight(a, b);
   }
 
-  void enqueue(std::uint32_t i) {
-    if (!may_go(i) || !may_be_joined(i)) return;
-    for (const std::uint32_t onto : {before_[i], after_[i]}) {
-      const Candidate candidate = judge(i, onto);
-      if (std::isfinite(candidate.worst_m)) queue_.push(candidate);
+  /// May edges to a place between two neighbours stand for the samples on both sides of it?
+  bool may_be_joined(std::uint32_t gone, std::uint32_t onto, const Place& between) const {
+    const bool is_before = before_[gone] == onto;
+    for (const std::uint32_t end :
+         {is_before ? after_[gone] : before_[gone], is_before ? before_[onto] : after_[onto]}) {
+      if (placer_.bend_m(between, place(end)) > options_.largest_bend_m) return false;
     }
+    return true;
+  }
+
+  void enqueue(std::uint32_t i) {
+    if (!may_go(i)) return;
+    const bool may_be_left_out = may_be_joined(i);
+    for (const std::uint32_t onto : {before_[i], after_[i]}) {
+      if (may_be_left_out) enqueue(judge(i, onto, vertices_[chain_[onto]].border));
+      if (!may_be_raised(i, onto)) continue;
+      for (const BorderPlace& at : between(i, onto)) enqueue(judge(i, onto, at));
+    }
+  }
+
+  void enqueue(const Candidate& candidate) {
+    if (std::isfinite(candidate.worst_m)) queue_.push(candidate);
+  }
+
+  /// Samples of the line between two vertices of the chain.
+  std::vector<BorderPlace> between(std::uint32_t gone, std::uint32_t onto) const {
+    const BorderPlace a = vertices_[chain_[gone]].border, b = vertices_[chain_[onto]].border;
+    std::vector<BorderPlace> places;
+    if (!a.is_sample() || !b.is_sample()) return places;
+    for (int k = 1; k < kPartsOfEdge; ++k) {
+      const BorderPlace at(a.column + std::trunc((b.column - a.column) * k / kPartsOfEdge),
+                           a.row + std::trunc((b.row - a.row) * k / kPartsOfEdge));
+      if (at == a || at == b || (!places.empty() && places.back() == at)) continue;
+      places.push_back(at);
+    }
+    return places;
   }
 
   /// The vertices around i from its neighbour `onto` on, that one left out.
@@ -234,7 +272,7 @@ class ChainCollapse {
 
   /// May a vertex that another collapses onto go up or down with it? Not on the edge of the data.
   bool may_be_raised(std::uint32_t gone, std::uint32_t onto) const {
-    return options_.raise && may_go(onto) && rings_[gone].is_closed && rings_[onto].is_closed;
+    return options_.place_at && may_go(onto) && rings_[gone].is_closed && rings_[onto].is_closed;
   }
 
   /// The fan around both; the last vertex is the first again.
@@ -245,9 +283,8 @@ class ChainCollapse {
   }
 
   /// The height that is best for the fan; none if there is none within the tolerance.
-  std::optional<double> best_height_m(std::uint32_t onto,
+  std::optional<double> best_height_m(const Place& centre,
                                       const std::vector<std::uint32_t>& around) const {
-    const Place& centre = place(onto);
     FeasibleHeights heights(field_, options_.tolerance_m);
     for (std::size_t k = 0; k + 1 < around.size(); ++k) {
       const Place &a = vertices_[around[k]].place, &b = vertices_[around[k + 1]].place;
@@ -257,7 +294,7 @@ class ChainCollapse {
     return heights.best_m();
   }
 
-  Candidate judge(std::uint32_t gone, std::uint32_t onto) const {
+  Candidate judge(std::uint32_t gone, std::uint32_t onto, const BorderPlace& at) const {
     constexpr double kRefused = std::numeric_limits<double>::infinity();
     Candidate candidate{0,
                         kRefused,
@@ -266,18 +303,26 @@ class ChainCollapse {
                         version_[gone],
                         version_[onto],
                         place(onto),
+                        at,
                         std::numeric_limits<double>::quiet_NaN()};
     const double altitude = options_.smallest_altitude_cells * kUnitsPerCell;
     std::vector<std::uint32_t> around;
     if (may_be_raised(gone, onto)) {
       around = around_both(gone, onto);
-      const std::optional<double> height_m = best_height_m(onto, around);
+      if (at != vertices_[chain_[onto]].border) {
+        candidate.place = options_.place_at(at.sample(), place(onto).height_m);
+        if (!may_be_joined(gone, onto, candidate.place)) {
+          candidate.worst_m = kRefused;
+          return candidate;
+        }
+      }
+      const std::optional<double> height_m = best_height_m(candidate.place, around);
       if (!height_m) {
         candidate.worst_m = kRefused;
         return candidate;
       }
       candidate.raised_m = *height_m;
-      candidate.place = options_.raise(chain_[onto], *height_m);
+      candidate.place = options_.place_at(at.sample(), *height_m);
     } else {
       around = others(gone, onto);
     }
@@ -311,6 +356,7 @@ class ChainCollapse {
     const std::uint32_t gone = candidate.gone, onto = candidate.onto;
     const std::uint32_t u = chain_[gone], v = chain_[onto];
     vertices_[v].place = candidate.place;
+    vertices_[v].border = candidate.at;
     if (!std::isnan(candidate.raised_m)) result_.raised_m[v] = candidate.raised_m;
     if (guard_) {
       const VertexId core[] = {VertexId{u}, VertexId{v}};

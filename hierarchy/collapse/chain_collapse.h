@@ -22,15 +22,16 @@ struct ChainOptions {
   /// where the mesh goes on on both sides. Half a cell at most: then a tile's own samples and those
   /// on its border are all that it can cover.
   double largest_bend_m = 0;
-  /// Where a vertex of the strip, of those in the chain, is written at a wished height. Empty: all
-  /// keep their heights.
-  std::function<Place(std::uint32_t vertex, double height_m)> raise;
+  /// Where a vertex at a sample of the chain's line is written at a wished height. Empty: all
+  /// vertices keep their places.
+  std::function<Place(const SampleId& at, double height_m)> place_at;
 };
 
 /// What became of a chain.
 struct ChainResult {
   std::vector<std::uint32_t> target;  ///< for each vertex of the strip: itself, or where it went
   std::vector<Place> places;          ///< of each vertex of the strip
+  std::vector<BorderPlace> borders;   ///< of each: where it is now
   std::vector<double> raised_m;       ///< for each: the height last wished for it; NaN: as it was
   std::int64_t collapses = 0;
   std::int64_t refused_by_blend = 0;  ///< what the error allowed and the blend did not

@@ -96,22 +96,24 @@ class SeamBuild {
         reference_(samples_, frame_, step_m() / frame_.spacing_m(), kMostBehind) {
     place_vertices();
     list_chain();
+    if (source_.features == nullptr) find_line();
   }
 
   SeamChain run(double tolerance_m) {
     const double step_cells = step_m() / frame_.spacing_m();
     // as in build_tile: the grid frame's straight lines are not quite the world's
-    ChainOptions options{
-        .tolerance_m = kShare * 0.999 * tolerance_m,
-        .blend_tolerance_m = 0.999 * tolerance_m,
-        .smallest_altitude_cells = source_.lattice.smallest_altitude_steps() * step_cells,
-        .largest_bend_m =
-            std::min(kLargestBend * tolerance_m, kLargestBend_cells * frame_.spacing_m()),
-        .raise = {}};
+    ChainOptions options{.tolerance_m = kShare * 0.999 * tolerance_m,
+                         .blend_tolerance_m = 0.999 * tolerance_m,
+                         .smallest_altitude_cells = smallest_altitude_steps() * step_cells,
+                         .largest_bend_m = std::min(kLargestBend * tolerance_m,
+                                                    kLargestBend_cells * frame_.spacing_m()),
+                         .place_at = {}};
     // water keeps its height, and so do the lines that end on a seam
     if (source_.features == nullptr) {
-      options.raise = [this](std::uint32_t v, double height_m) {
-        return frame_.place_of(written(v, over_ellipsoid_m(v, height_m)));
+      options.place_at = [this](const SampleId& at, double height_m) {
+        return frame_.place_of(source_.lattice.of_sample(BorderPlace(at).position(), line_plumb(at),
+                                                         over_ellipsoid_m(at, height_m),
+                                                         seam_.first.level));
       };
     }
     constexpr int kMostTries = 8;
@@ -143,6 +145,18 @@ class SeamBuild {
   static constexpr double kLargestBend_cells = 0.4;
   // chains know the samples that are kept alone
   static constexpr std::int64_t kMostBehind = 0;
+  static constexpr double kShareOfAltitude = 0.25;
+
+  /// At level 0 the triangles beside a long edge of a seam are one cell wide, until their tiles
+  /// replace them. Held to the altitude of those that stay, no edge could be long.
+  double smallest_altitude_steps() const {
+    const int level = seam_.first.level;
+    const bool is_rounded_again =
+        source_.lattice.step_m(level + 1) != source_.lattice.step_m(level);
+    const double steps = source_.lattice.smallest_altitude_steps();
+    const bool is_for_now = level == 0 && !is_rounded_again && source_.features == nullptr;
+    return is_for_now ? kShareOfAltitude * steps : steps;
+  }
 
   double step_m() const { return source_.lattice.step_m(seam_.first.level).x(); }
 
@@ -187,10 +201,26 @@ class SeamBuild {
       plumbs_[v] = plumbs[i];
       own_m_[v] = strip_.borders[v].is_sample() ? heights_m[i] : strip_.line_heights_m[v];
       if (finer_.places.empty() || source_.features != nullptr) continue;
-      const double finer_m = over_ellipsoid_m(v, finer_.places[v].height_m);
+      const double finer_m = over_ellipsoid_m(strip_.borders[v], finer_.places[v].height_m);
       const double rounding_m = source_.lattice.step_m(seam_.first.level - 1).norm();
       if (std::abs(finer_m - own_m_[v]) > rounding_m) raised_m_[v] = finer_m;
     }
+  }
+
+  /// Asks the world where the samples of the line stand.
+  void find_line() {
+    const Window line = samples_of(source_.pyramid, seam_);
+    std::vector<GridPosition> positions;
+    for (std::int64_t k = 0; k < line.columns * line.rows; ++k) {
+      positions.push_back({static_cast<double>(line.column + (line.columns == 1 ? 0 : k)),
+                           static_cast<double>(line.row + (line.columns == 1 ? k : 0))});
+    }
+    line_plumbs_ = source_.world.plumbs(positions);
+  }
+
+  const Plumb& line_plumb(const SampleId& at) const {
+    const Window line = samples_of(source_.pyramid, seam_);
+    return line_plumbs_[static_cast<std::size_t>(at.column - line.column + at.row - line.row)];
   }
 
   LatticePoint written(std::size_t v, double height_m) const {
@@ -199,8 +229,7 @@ class SeamBuild {
   }
 
   /// \param height_m  over the datum of the places.
-  double over_ellipsoid_m(std::size_t v, double height_m) const {
-    const BorderPlace& at = strip_.borders[v];
+  double over_ellipsoid_m(const BorderPlace& at, double height_m) const {
     return height_m + frame_.drop_m(at.column - static_cast<double>(samples_.window().column),
                                     at.row - static_cast<double>(samples_.window().row));
   }
@@ -317,9 +346,9 @@ class SeamBuild {
       const std::uint32_t onto = result.target[v];
       const double height_m = std::isnan(result.raised_m[onto])
                                   ? raised_m_[onto]
-                                  : over_ellipsoid_m(onto, result.raised_m[onto]);
+                                  : over_ellipsoid_m(result.borders[onto], result.raised_m[onto]);
       if (onto == v && std::isnan(height_m)) continue;
-      chain.push_back({strip_.borders[v], strip_.borders[onto], height_m});
+      chain.push_back({strip_.borders[v], strip_.borders[onto], result.borders[onto], height_m});
     }
     return chain;
   }
@@ -329,7 +358,7 @@ class SeamBuild {
     SeamChain chain;
     for (const std::uint32_t v : chain_) {
       if (std::isnan(raised_m_[v])) continue;
-      chain.push_back({strip_.borders[v], strip_.borders[v], raised_m_[v]});
+      chain.push_back({strip_.borders[v], strip_.borders[v], strip_.borders[v], raised_m_[v]});
     }
     return chain;
   }
@@ -342,9 +371,10 @@ class SeamBuild {
   Reference reference_;
   TerrainMesh mesh_;
   FinerLevel finer_;
-  std::vector<Plumb> plumbs_;     // of the strip's samples
-  std::vector<double> own_m_;     // their heights over the ellipsoid
-  std::vector<double> raised_m_;  // at the finer level, where it has them at others; else NaN
+  std::vector<Plumb> plumbs_;       // of the strip's samples
+  std::vector<Plumb> line_plumbs_;  // of the line's samples
+  std::vector<double> own_m_;       // their heights over the ellipsoid
+  std::vector<double> raised_m_;    // at the finer level, where it has them at others; else NaN
   std::vector<std::uint32_t> chain_;
   std::vector<Corners> collapsed_;  // of the last try
 };

@@ -5,7 +5,7 @@
 namespace terrane::tiler {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x336d616573727274;  // "trrseam3"
+constexpr std::uint64_t kMagic = 0x346d616573727274;  // "trrseam4"
 
 bool holds(const Pyramid& pyramid, const TileId& tile) {
   return tile.x >= 0 && tile.y >= 0 && pyramid.holds(tile);

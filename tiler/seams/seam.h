@@ -42,8 +42,9 @@ Window both_sides(const Pyramid& pyramid, const SeamId& seam);
 /// What became of a vertex on a border.
 struct SeamVertex {
   hierarchy::BorderPlace from;  ///< where it was at the finer level
-  hierarchy::BorderPlace onto;  ///< the place that it was collapsed onto; the same if it stays
-  /// Height at which that place is written, over the ellipsoid; NaN: that of its sample.
+  hierarchy::BorderPlace onto;  ///< where the vertex was that it became; the same if it stays
+  hierarchy::BorderPlace at;    ///< where that vertex is now
+  /// Height at which it is written there, over the ellipsoid; NaN: that of its sample.
   double height_m = std::numeric_limits<double>::quiet_NaN();
 };
 

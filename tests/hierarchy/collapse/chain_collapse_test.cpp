@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <random>
 #include <set>
 
@@ -16,6 +17,10 @@ using testing::field_of;
 using testing::grid_of;
 
 constexpr std::int64_t kRow = 2;
+
+Place place_at(const SampleId& at, double height_m) {
+  return ExactPlacer().place({at.column * kUnitsPerCell, -at.row * kUnitsPerCell}, height_m);
+}
 
 /// A full-resolution mesh of five rows; the chain is the middle one, all of which may go.
 struct Seam {
@@ -31,6 +36,7 @@ struct Seam {
       if (full.vertices[v].row != kRow) continue;
       chain.push_back(v);
       mesh.vertices[v].kind = VertexKind::kOutline;
+      mesh.vertices[v].border = full.vertices[v];
     }
   }
 
@@ -40,22 +46,23 @@ struct Seam {
                           {.tolerance_m = tolerance_m, .blend_tolerance_m = blend_tolerance_m});
   }
 
-  /// The same, and heights may change.
-  ChainResult collapse_and_raise(double tolerance_m, const FinerLevel& finer = {},
-                                 double blend_tolerance_m = 1) const {
+  /// The same, and vertices may go up and down and along the chain.
+  ChainResult collapse_and_move(double tolerance_m, const FinerLevel& finer = {},
+                                double blend_tolerance_m = 1) const {
     ChainOptions options{.tolerance_m = tolerance_m, .blend_tolerance_m = blend_tolerance_m};
-    options.raise = [this](std::uint32_t v, double height_m) {
-      return ExactPlacer().place(mesh.vertices[v].place.plan, height_m);
-    };
+    options.place_at = place_at;
     return collapse_chain(mesh, chain, finer, field_of(grid), ExactPlacer(), options);
   }
 
+  /// Where the vertices that stay are now.
   std::set<std::int64_t> kept_columns(const ChainResult& result) const {
     std::set<std::int64_t> columns;
-    for (std::size_t i = 0; i < chain.size(); ++i) {
-      if (result.target[chain[i]] == chain[i]) columns.insert(static_cast<std::int64_t>(i));
-    }
+    for (const std::uint32_t v : chain) columns.insert(column_of(result, result.target[v]));
     return columns;
+  }
+
+  static std::int64_t column_of(const ChainResult& result, std::uint32_t v) {
+    return static_cast<std::int64_t>(result.borders[v].column);
   }
 
   /// The triangles after the collapses: corners moved, those with two alike left out.
@@ -131,7 +138,7 @@ TEST(ChainCollapse, AnArcNeedsFewerVerticesWhereTheyMayRise) {
   // a chord of n cells is at most n^2 / 400 m above the arc; half of that if its ends may sink
   const Seam arc(81, [](auto c, auto) { return static_cast<double>(c * c) / 100; });
   const auto kept = arc.kept_columns(arc.collapse(0.5));
-  const ChainResult raised = arc.collapse_and_raise(0.5);
+  const ChainResult raised = arc.collapse_and_move(0.5);
   EXPECT_LT(arc.kept_columns(raised).size(), kept.size());
   for (const std::uint32_t end : {arc.chain.front(), arc.chain.back()}) {
     EXPECT_EQ(raised.places[end].height_m, arc.mesh.vertices[end].place.height_m);
@@ -139,10 +146,38 @@ TEST(ChainCollapse, AnArcNeedsFewerVerticesWhereTheyMayRise) {
   }
 }
 
+TEST(ChainCollapse, TwoVerticesBecomeOneAtTheSampleWhereTheGroundBends) {
+  // a ridge across the seam at column 4, where neither side's mesh has a vertex on the seam
+  HeightGrid grid = grid_of(9, 5, [](auto c, auto) { return 12.0 - 3.0 * std::abs(c - 4.0); });
+  TerrainMesh mesh;
+  for (const SampleId s :
+       {SampleId{0, 2}, {3, 2}, {5, 2}, {8, 2}, {0, 0}, {4, 0}, {8, 0}, {0, 4}, {4, 4}, {8, 4}}) {
+    mesh.vertices.push_back(
+        {.place = ExactPlacer().place({s.column * kUnitsPerCell, -s.row * kUnitsPerCell},
+                                      grid.at(s.column, s.row)),
+         .kind = VertexKind::kOutline,
+         .border = s});
+  }
+  mesh.triangles = {{0, 1, 4}, {1, 5, 4}, {1, 2, 5}, {2, 3, 6}, {2, 6, 5},
+                    {0, 7, 1}, {7, 8, 1}, {1, 8, 2}, {2, 8, 9}, {2, 9, 3}};
+  const std::vector<std::uint32_t> chain{0, 1, 2, 3};
+  ChainOptions options{.tolerance_m = 0.01, .blend_tolerance_m = 1};
+  EXPECT_EQ(collapse_chain(mesh, chain, {}, field_of(grid), ExactPlacer(), options).collapses, 0);
+  options.place_at = place_at;
+  const ChainResult result =
+      collapse_chain(mesh, chain, {}, field_of(grid), ExactPlacer(), options);
+  ASSERT_EQ(result.collapses, 1);
+  EXPECT_EQ(result.target[1], result.target[2]);
+  const std::uint32_t v = result.target[1];
+  EXPECT_EQ(result.borders[v], BorderPlace(4, kRow));
+  EXPECT_EQ(result.places[v].plan, (GridPoint{4 * kUnitsPerCell, -kRow * kUnitsPerCell}));
+  EXPECT_EQ(result.places[v].height_m, 12);
+}
+
 TEST(ChainCollapse, ALockedVertexKeepsItsHeight) {
   Seam seam(17, [](auto c, auto) { return c % 2 == 0 ? 0.5 : -0.5; });
   seam.mesh.vertices[seam.chain[6]].kind = VertexKind::kLocked;
-  const ChainResult result = seam.collapse_and_raise(2);
+  const ChainResult result = seam.collapse_and_move(2);
   EXPECT_EQ(result.places[seam.chain[6]].height_m, 0.5);
 }
 
@@ -150,11 +185,11 @@ TEST(ChainCollapse, ARiseThatTheBlendDoesNotAllowIsRefused) {
   const Seam bump(9, [](auto c, auto r) { return c == 4 && r == kRow ? 1.0 : 0.0; });
   FinerLevel finer{.places = {}, .triangles = bump.mesh.triangles, .target = {}};
   for (const TerrainVertex& vertex : bump.mesh.vertices) finer.places.push_back(vertex.place);
-  const ChainResult strict = bump.collapse_and_raise(2, finer, 0.1);
-  const auto height_m = [&](std::uint32_t v) { return strict.places[v].height_m; };
-  for (std::size_t i = 0; i < bump.chain.size(); ++i) {
-    if (strict.target[bump.chain[i]] != bump.chain[i]) continue;
-    EXPECT_NEAR(height_m(bump.chain[i]), i == 4 ? 1 : 0, 0.1 + 1.0 / 1024);
+  const ChainResult strict = bump.collapse_and_move(2, finer, 0.1);
+  for (const std::uint32_t v : bump.chain) {
+    if (strict.target[v] != v) continue;
+    EXPECT_NEAR(strict.places[v].height_m, Seam::column_of(strict, v) == 4 ? 1 : 0,
+                0.1 + 1.0 / 1024);
   }
 }
 
@@ -172,11 +207,11 @@ TEST_P(RandomSeam, StaysWithinTheBoundAndFoldsNothing) {
   const double tolerance_m = uniform(0.3, 8);
 
   const ChainResult result =
-      GetParam() % 2 == 0 ? seam.collapse(tolerance_m) : seam.collapse_and_raise(tolerance_m);
+      GetParam() % 2 == 0 ? seam.collapse(tolerance_m) : seam.collapse_and_move(tolerance_m);
 
   double area = 0;
   for (const auto& [a, b, c] : seam.triangles_after(result)) {
-    const auto plan = [&](std::uint32_t v) { return seam.mesh.vertices[v].place.plan; };
+    const auto plan = [&](std::uint32_t v) { return result.places[v].plan; };
     const auto twice = static_cast<double>(orient2d(plan(a), plan(b), plan(c)));
     EXPECT_GT(twice, 0);
     area += twice / 2 / kUnitsPerCell / kUnitsPerCell;
@@ -185,14 +220,16 @@ TEST_P(RandomSeam, StaysWithinTheBoundAndFoldsNothing) {
   EXPECT_NEAR(area, 4.0 * static_cast<double>(seam.grid.window.columns - 1), 1e-9);
 
   // along the seam the mesh is a broken line through the kept vertices
-  const auto kept = seam.kept_columns(result);
-  for (auto from = kept.begin(), to = std::next(from); to != kept.end(); ++from, ++to) {
-    const auto height_m = [&](std::int64_t column) {
-      return result.places[seam.chain[static_cast<std::size_t>(column)]].height_m;
-    };
-    const double at_from = height_m(*from), at_to = height_m(*to);
-    for (std::int64_t c = *from; c < *to; ++c) {
-      const double t = static_cast<double>(c - *from) / static_cast<double>(*to - *from);
+  std::map<std::int64_t, double> kept_m;
+  for (const std::uint32_t v : seam.chain) {
+    const std::uint32_t onto = result.target[v];
+    kept_m[Seam::column_of(result, onto)] = result.places[onto].height_m;
+  }
+  for (auto from = kept_m.begin(), to = std::next(from); to != kept_m.end(); ++from, ++to) {
+    const auto [first, at_from] = *from;
+    const auto [last, at_to] = *to;
+    for (std::int64_t c = first; c < last; ++c) {
+      const double t = static_cast<double>(c - first) / static_cast<double>(last - first);
       // heights are placed in 1/1024 m
       EXPECT_LE(std::abs(at_from + t * (at_to - at_from) - seam.grid.at(c, kRow)),
                 tolerance_m + 2.0 / 1024);

@@ -40,11 +40,12 @@ TEST(Seams, LieOnTheLastColumnOrRowOfTheirFirstTile) {
 TEST(Seams, ComeBackFromTheirFile) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "some.seam";
-  write_finished_seam({{{3, 64}, {2, 64}}, {{5, 64}, {7, 64}, 812.5}}, file);
+  write_finished_seam({{{3, 64}, {2, 64}, {2, 64}}, {{5, 64}, {7, 64}, {6, 64}, 812.5}}, file);
   const SeamChain read = read_finished_seam(file);
   ASSERT_EQ(read.size(), 2U);
   EXPECT_EQ(read[1].from, (hierarchy::BorderPlace{5, 64}));
   EXPECT_EQ(read[1].onto, (hierarchy::BorderPlace{7, 64}));
+  EXPECT_EQ(read[1].at, (hierarchy::BorderPlace{6, 64}));
   EXPECT_EQ(read[1].height_m, 812.5);
   EXPECT_TRUE(std::isnan(read[0].height_m));
 }
@@ -52,7 +53,7 @@ TEST(Seams, ComeBackFromTheirFile) {
 TEST(Seams, ADamagedFileIsAnInputErrorThatNamesIt) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "some.seam";
-  write_finished_seam({{{3, 64}, {2, 64}}}, file);
+  write_finished_seam({{{3, 64}, {2, 64}, {2, 64}}}, file);
   const std::string whole = testing::content_of(file);
   for (const std::string& damaged : {whole.substr(0, whole.size() - 1), "x" + whole}) {
     write_whole_file(file, damaged);
