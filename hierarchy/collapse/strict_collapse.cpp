@@ -7,6 +7,8 @@
 #include "hierarchy/collapse/boundary_rule.h"
 #include "hierarchy/collapse/edge_flip.h"
 #include "hierarchy/collapse/morph_guard.h"
+#include "hierarchy/collapse/near_locked.h"
+#include "hierarchy/collapse/polish_rounds.h"
 #include "hierarchy/collapse/star_error.h"
 #include "hierarchy/collapse/star_fit.h"
 #include "hierarchy/collapse/triangle_plane.h"
@@ -21,9 +23,8 @@ constexpr float kIntervalMargin = 0.2F;
 // triangles in a row: with their samples they fit a second-level cache
 constexpr std::uint32_t kBlock = 8192;
 
-// by effort, at level 0 and above
-constexpr int kPolishRounds[] = {0, 0, 3, 40};
-constexpr int kPolishRoundsAbove[] = {0, 0, 2, 8};
+// that is how many edges from a locked vertex polish near it goes
+constexpr int kNearEdges = 2;
 
 // how far vertices try to go to each neighbour, round by round: 1/4, 1/2, 1/8, 1/16 of the way
 constexpr std::int32_t kPartsOfWay[] = {4, 2, 8, 16};
@@ -65,6 +66,7 @@ class StrictCollapse {
         walker_(mesh_),
         placer_(placer),
         options_(options),
+        sample_count_(field.kept.empty() ? static_cast<double>(field.heights_m.size()) : 0),
         smallest_altitude_cells_(static_cast<float>(options.smallest_altitude_cells)),
         field_(field),
         samples_(field, vertices_, mesh_.triangles(), mesh_.triangle_count()),
@@ -93,8 +95,9 @@ class StrictCollapse {
     tries_more_places_ = guard_ && options_.effort > 0;
     sweep([this](std::uint32_t triangle) { return sweep_triangle(TriangleId{triangle}); });
     tolerance_m_ = options_.tolerance_m;
+    std::ranges::fill(tested_, 0);
     if (options_.effort > 0 || guard_) collapse_edges();
-    polish((guard_ ? kPolishRoundsAbove : kPolishRounds)[options_.effort]);
+    polish();
     return finish(given_vertices);
   }
 
@@ -109,25 +112,34 @@ class StrictCollapse {
   }
 
   std::int64_t collapse_edges() {
-    std::ranges::fill(tested_, 0);
     const std::int64_t before = result_.edge_collapses;
     sweep([this](std::uint32_t triangle) { return sweep_edges(TriangleId{triangle}); });
     return result_.edge_collapses - before;
   }
 
   /// Makes room under the tolerance and collapses what it then allows, again and again.
-  void polish(int rounds) {
+  void polish() {
+    const auto [everywhere, near] =
+        polish_rounds(options_.effort, guard_.has_value(),
+                      sample_count_ / static_cast<double>(mesh_.live_triangle_count()));
     tries_more_places_ = true;
     int idle_rounds = 0;
-    for (int round = 0; round < rounds && idle_rounds < std::ssize(kPartsOfWay); ++round) {
+    for (int round = 0; round < everywhere + near; ++round) {
+      if (idle_rounds == std::ssize(kPartsOfWay)) return;
+      const bool is_everywhere = round < everywhere;
+      if (!is_everywhere) is_polished_ = near_locked(mesh_, vertices_, kNearEdges);
+      ++sweep_;
       flip_edges();
       for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v) {
         move(VertexId{v}, kPartsOfWay[round % std::ssize(kPartsOfWay)]);
       }
       flip_edges();
+      if (is_everywhere) std::ranges::fill(tested_, 0);
       idle_rounds = collapse_edges() == 0 ? idle_rounds + 1 : 0;
     }
   }
+
+  bool is_polished(VertexId v) const { return is_polished_.empty() || is_polished_[index(v)] != 0; }
 
   /// A finer level can blend into a mesh of other places, but not of other edges.
   void flip_edges() {
@@ -140,6 +152,7 @@ class StrictCollapse {
     for (std::uint32_t k = 0; k < 3; ++k) {
       const HalfedgeId h = HalfedgeMesh::halfedge(t, k);
       const TriangleId across = HalfedgeMesh::triangle(mesh_.opposite(h));
+      if (!is_polished(mesh_.start(h)) || !is_polished(mesh_.end(h))) continue;
       if (across < t || !flip_.is_better(h, mesh_, vertices_, samples_, tolerance_m_,
                                          options_.smallest_altitude_cells, options_.steepest_m)) {
         continue;
@@ -153,8 +166,8 @@ class StrictCollapse {
 
   /// Moves a vertex towards a neighbour if it is nearer to the samples there.
   void move(VertexId v, std::int32_t parts_of_way) {
-    if (mesh_.outgoing(v) == kNoHalfedge || vertices_[index(v)].kind != VertexKind::kInterior)
-      return;
+    if (!is_polished(v) || mesh_.outgoing(v) == kNoHalfedge) return;
+    if (vertices_[index(v)].kind != VertexKind::kInterior) return;
     walker_.around_vertex(v, stencil_);
     gather_few();
     const Place here = vertices_[index(v)].place;
@@ -171,6 +184,10 @@ class StrictCollapse {
                        judge_.sectors(star_));
     vertices_[index(v)].place = *place;
     ++result_.moves;
+    changed_[index(v)] = sweep_;
+    for (const VertexId w : stencil_.polygon) {
+      if (!mesh_.is_ghost(w)) changed_[index(w)] = sweep_;
+    }
   }
 
   /// Visits all triangles, block by block so that a block stays in the cache, until it is not worth
@@ -516,12 +533,16 @@ class StrictCollapse {
   StencilWalker walker_;
   const Placer& placer_;
   const StrictOptions& options_;
+  // 0 where they are picked: a tile is then tried several times, and polish would be paid each time
+  double sample_count_;
   float smallest_altitude_cells_;
   const SampleField& field_;
   CoveredSamples samples_;
   std::optional<MorphGuard> guard_;
   std::optional<LineChains> lines_;
   std::vector<VertexId> parent_;  // level 0 only: where a vertex went, to be followed
+
+  std::vector<std::uint8_t> is_polished_;  // of each vertex; empty: all are
 
   double tolerance_m_ = 0;  // of this sweep
   bool tries_more_places_ = false;

@@ -25,9 +25,10 @@ struct StrictOptions {
   /// Most that a new triangle may rise, in metres per cell: what later levels' rounding moves it by
   /// must not become too much in height.
   double steepest_m = std::numeric_limits<double>::infinity();
-  /// 0 to 3. Above 1, vertices are moved to where the squared error is least, without a finer level
-  /// edges are flipped, too, and collapses tried again, in more and more rounds. 0: without a finer
-  /// level, triangles alone collapse; with one, few places are tried for a new vertex.
+  /// 0 to 3. Above 0, vertices are moved to where the squared error is least, without a finer level
+  /// edges are flipped, too, and collapses tried again, in more and more rounds (polish_rounds.h);
+  /// at 1 without a finer level near locked vertices alone. 0: without a finer level, triangles
+  /// alone collapse; with one, few places are tried for a new vertex.
   int effort = kDefaultEffort;
   /// How far the mesh's feature lines may move in plan.
   LineTolerance lines;
