@@ -172,7 +172,9 @@ class ChainCollapse {
   }
 
   ChainResult run() {
-    for (std::uint32_t i = 0; i < chain_.size(); ++i) enqueue(i);
+    for (std::uint32_t i = 0; i < chain_.size(); ++i) {
+      for (const std::uint32_t onto : {before_[i], after_[i]}) enqueue(i, onto);
+    }
     while (!queue_.empty()) {
       const Candidate next = queue_.top();
       queue_.pop();
@@ -232,14 +234,12 @@ class ChainCollapse {
     return true;
   }
 
-  void enqueue(std::uint32_t i) {
-    if (!may_go(i)) return;
-    const bool may_be_left_out = may_be_joined(i);
-    for (const std::uint32_t onto : {before_[i], after_[i]}) {
-      if (may_be_left_out) enqueue(judge(i, onto, vertices_[chain_[onto]].border));
-      if (!may_be_raised(i, onto)) continue;
-      for (const BorderPlace& at : between(i, onto)) enqueue(judge(i, onto, at));
-    }
+  void enqueue(std::uint32_t gone, std::uint32_t onto) {
+    if (!may_go(gone)) return;
+    if (may_be_joined(gone)) enqueue(judge(gone, onto, vertices_[chain_[onto]].border));
+    // between them it is all the same which one goes
+    if (onto != after_[gone] || !may_be_raised(gone, onto)) return;
+    for (const BorderPlace& at : between(gone, onto)) enqueue(judge(gone, onto, at));
   }
 
   void enqueue(const Candidate& candidate) {
@@ -380,13 +380,14 @@ class ChainCollapse {
       if (i != kNone) changed.push_back(i);
     }
     for (const std::uint32_t i : changed) ++version_[i];
-    std::vector<std::uint32_t> near = changed;
     for (const std::uint32_t i : changed) {
       for (const std::uint32_t n : {before_[i], after_[i]}) {
-        if (n != kNone && std::ranges::find(near, n) == near.end()) near.push_back(n);
+        if (n == kNone) continue;
+        enqueue(i, n);
+        const bool is_also_changed = std::ranges::find(changed, n) != changed.end();
+        if (!is_also_changed) enqueue(n, i);
       }
     }
-    for (const std::uint32_t i : near) enqueue(i);
   }
 
   ///      a3───a2            onto's ring had ... a1, gone, a4 ...: a2 and a3 take gone's place;

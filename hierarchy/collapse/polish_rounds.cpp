@@ -7,7 +7,7 @@ constexpr int kDefault = 1;
 
 // by effort, at level 0 and above
 constexpr PolishRounds kRounds[] = {{}, {0, 1}, {3, 0}, {40, 0}};
-constexpr PolishRounds kRoundsAbove[] = {{}, {2, 2}, {2, 2}, {8, 0}};
+constexpr PolishRounds kRoundsAbove[] = {{}, {3, 1}, {3, 1}, {8, 0}};
 
 // with the default effort: where levels were 6 % above a mesh without tiles (docs/benchmarks.md)
 constexpr double kFewSamples = 15, kManySamples = 30;

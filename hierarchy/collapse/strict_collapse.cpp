@@ -171,6 +171,7 @@ class StrictCollapse {
     walker_.around_vertex(v, stencil_);
     gather_few();
     const Place here = vertices_[index(v)].place;
+    here_ = &here;
     water_m_ = vertices_[index(v)].water_m;
     candidates_.clear();
     candidates_.push_back({here.plan, here.height_m});
@@ -179,6 +180,7 @@ class StrictCollapse {
       candidates_.push_back({part_of_way(here.plan, there, parts_of_way), here.height_m});
     }
     const std::optional<Place> place = best_candidate();
+    here_ = nullptr;
     if (!place || place->lattice == here.lattice) return;
     samples_.share_out(star_.triangles(), star_.samples(), star_.keen_count(),
                        judge_.sectors(star_));
@@ -418,6 +420,8 @@ class StrictCollapse {
     const double height_m = std::isnan(water_m_) ? wished_height_m(candidate)
                                                  : placer_.over_datum_m(candidate.plan, water_m_);
     const Place place = placer_.place(candidate.plan, height_m);
+    // as the mesh is, it is all that it has to be
+    if (here_ && place.lattice == here_->lattice) return place;
     if (!is_sound(place)) return std::nullopt;
     if (!holds(place) || !blends(place)) return std::nullopt;
     return place;
@@ -544,7 +548,8 @@ class StrictCollapse {
 
   std::vector<std::uint8_t> is_polished_;  // of each vertex; empty: all are
 
-  double tolerance_m_ = 0;  // of this sweep
+  const Place* here_ = nullptr;  // of the vertex that may move; null in a collapse
+  double tolerance_m_ = 0;       // of this sweep
   bool tries_more_places_ = false;
   std::uint32_t sweep_ = 0;
   std::vector<std::uint32_t> changed_;    // sweep after which a vertex is worth another try
