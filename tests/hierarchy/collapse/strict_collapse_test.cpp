@@ -233,8 +233,11 @@ TEST(StrictCollapse, WhatIsMarkedAsWaterStaysOnItsSideOfTheShore) {
   ASSERT_EQ(mesh.in_water.size(), mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (const std::uint32_t v : mesh.triangles[t]) {
-      if (mesh.in_water[t] == 1) EXPECT_LE(column(mesh, v), 12);
-      if (mesh.in_water[t] == 0) EXPECT_GE(column(mesh, v), 12);
+      if (mesh.in_water[t] == 1) {
+        EXPECT_LE(column(mesh, v), 12);
+      } else {
+        EXPECT_GE(column(mesh, v), 12);
+      }
     }
   }
 }
