@@ -111,7 +111,6 @@ export function terrainMaterial(shared: SharedUniforms, tile: Tile, drape: Drape
       ...(shared as Record<string, IUniform>),
       stepM: {value: new Vector3()},
       offsetM: {value: new Vector3()},
-      isWater: {value: false},
       beginM: {value: 0},
       perM: {value: 0},
       errorM: {value: tile.errorM},
@@ -126,12 +125,15 @@ export function terrainMaterial(shared: SharedUniforms, tile: Tile, drape: Drape
   });
 }
 
-/** Draws the water of a tile, by the same program: so its vertices come to the very same places. */
+/**
+ * Draws the water of a tile, by a program of its own: software that draws runs both sides of a branch. Its vertices
+ * come to the very same places, as gl_Position is invariant.
+ */
 export function waterMaterial(tile: ShaderMaterial): ShaderMaterial {
-  const {vertexShader, fragmentShader, polygonOffsetFactor, polygonOffsetUnits, defines} = tile;
+  const {vertexShader, fragmentShader, polygonOffsetFactor, polygonOffsetUnits, uniforms} = tile;
   return new ShaderMaterial({
-    ...{vertexShader, fragmentShader, polygonOffsetFactor, polygonOffsetUnits, defines},
-    uniforms: {...tile.uniforms, isWater: {value: true}},
+    ...{vertexShader, fragmentShader, polygonOffsetFactor, polygonOffsetUnits, uniforms},
+    defines: {...tile.defines, WATER: 1},
   });
 }
 

@@ -39,6 +39,7 @@ const kPlace = /* glsl */ `
 
 export const kVertexShader = /* glsl */ `
   ${kPlace}
+  invariant gl_Position;
   attribute vec3 targetNormal;
   uniform float dropPerM;
   varying vec3 vNormal;
@@ -141,7 +142,6 @@ export const kFragmentShader = /* glsl */ `
   varying float vHeightM;
   varying vec3 vFromEyeM;
   varying vec2 vPlan;
-  uniform bool isWater;
   uniform float dropPerM;
   #ifdef IMAGE
   uniform sampler2D image;
@@ -195,14 +195,19 @@ export const kFragmentShader = /* glsl */ `
 
   // color: what the look gives level ground
   vec3 waterSurface(vec3 color, vec3 light) {
-    if (look == 1) return waterColor(vec3(0.5, 0.56, 0.6), light, 1.0);
-    if (look == 2) return waterColor(kWaterOnMaps, light, 0.3);
-    if (look == 4) return waterColor(mix(color, kWaterOnMaps, 0.35), light, 0.2);
-    if (look == 5) return waterColor(color, light, 0.2);
+    vec3 body = kWater;
+    float shine = 1.0;
+    if (look == 1) body = vec3(0.5, 0.56, 0.6);
+    if (look == 2) body = kWaterOnMaps;
+    if (look == 4) body = mix(color, kWaterOnMaps, 0.35);
+    if (look == 5) body = color;
+    if (look == 2) shine = 0.3;
+    if (look == 4 || look == 5) shine = 0.2;
     #ifdef IMAGE
-    if (look == 3) return waterColor(color, light, 0.6);
+    if (look == 3) body = color;
+    if (look == 3) shine = 0.6;
     #endif
-    return waterColor(kWater, light, 1.0);
+    return waterColor(body, light, shine);
   }
 
   // 0 where the ground is as level as the mesh may be wrong: at a contour's height its lines would follow
@@ -224,7 +229,11 @@ export const kFragmentShader = /* glsl */ `
   }
 
   void main() {
-    vec3 n = isWater ? vec3(0.0, 0.0, 1.0) : normalize(vNormal);
+    #ifdef WATER
+    vec3 n = vec3(0.0, 0.0, 1.0);
+    #else
+    vec3 n = normalize(vNormal);
+    #endif
     vec3 color = surfaceColor(n);
     n = normalize(vec3(n.xy, n.z / exaggeration));
     float sky = 0.5 + 0.5 * n.z;
@@ -232,11 +241,15 @@ export const kFragmentShader = /* glsl */ `
     // where colours are to be read, or have shadows of their own, shading only hints at the shape
     bool isReading = look >= 2;
     if (isReading) light = mix(vec3(1.0), light, 0.5);
-    color = isWater ? waterSurface(color, light) : color * light;
-    if (contourStrength > 0.0 && !isWater) {
+    #ifdef WATER
+    color = waterSurface(color, light);
+    #else
+    color *= light;
+    if (contourStrength > 0.0) {
       float line = mix(contour(contours.x), contour(contours.y), contours.z);
       color = mix(color, color * vec3(0.42, 0.3, 0.2), contourStrength * relief() * line);
     }
+    #endif
     if (hazePerM > 0.0) {
       float far = length(vFromEyeM) * hazePerM;
       vec3 direction = normalize(vFromEyeM);
