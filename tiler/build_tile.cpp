@@ -146,7 +146,7 @@ class TileBuild {
         source_.lattice.smallest_altitude_steps() * step_m() / frame_.spacing_m();
     options.steepest_m = source_.steepest * frame_.spacing_m();
 
-    constexpr int kMostTries = 12;
+    constexpr int kMostTries = 12, kTriesWithPolish = 3;
     for (int tries = 1;; ++tries) {
       const StrictResult result =
           hierarchy::collapse_strictly(input, reference_.field(), frame_, finer, options);
@@ -159,6 +159,7 @@ class TileBuild {
         return {written_mesh(result.mesh, measured.errors[0]), targets(result)};
       }
       if (tries == kMostTries) refuse(worst_m, tolerance_m);
+      options.has_polish = tries < kTriesWithPolish;
       measured.noted.insert(measured.noted.end(), left.begin(), left.end());
       reference_.learn(measured.noted);
       options.tolerance_m *= tightening(tries, worst_m, tolerance_m);

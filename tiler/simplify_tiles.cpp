@@ -55,7 +55,9 @@ struct Piece {
 
 struct PlanHash {
   std::size_t operator()(const std::pair<std::int64_t, std::int64_t>& plan) const {
-    return std::hash<std::int64_t>()(plan.first * 0x9E3779B97F4A7C1 ^ plan.second);
+    const auto x = static_cast<std::uint64_t>(plan.first);
+    return std::hash<std::uint64_t>()(x * 0x9E3779B97F4A7C15U ^
+                                      static_cast<std::uint64_t>(plan.second));
   }
 };
 

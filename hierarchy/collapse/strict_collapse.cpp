@@ -97,7 +97,7 @@ class StrictCollapse {
     tolerance_m_ = options_.tolerance_m;
     std::ranges::fill(tested_, 0);
     if (options_.effort > 0 || guard_) collapse_edges();
-    polish();
+    if (options_.has_polish) polish();
     return finish(given_vertices);
   }
 

@@ -30,6 +30,9 @@ struct StrictOptions {
   /// at 1 without a finer level near locked vertices alone. 0: without a finer level, triangles
   /// alone collapse; with one, few places are tried for a new vertex.
   int effort = kDefaultEffort;
+  /// Whether there is polish at all: it moves vertices by the field's samples, and where those are
+  /// not nearly as the world has them, that may never end within a tolerance there.
+  bool has_polish = true;
   /// How far the mesh's feature lines may move in plan.
   LineTolerance lines;
 };

@@ -151,8 +151,9 @@ class SeamBuild {
   /// replace them. Held to the altitude of those that stay, no edge could be long.
   double smallest_altitude_steps() const {
     const int level = seam_.first.level;
+    const Lattice& lattice = source_.lattice;
     const bool is_rounded_again =
-        source_.lattice.step_m(level + 1) != source_.lattice.step_m(level);
+        level + 1 == lattice.level_count() || lattice.step_m(level + 1) != lattice.step_m(level);
     const double steps = source_.lattice.smallest_altitude_steps();
     const bool is_for_now = level == 0 && !is_rounded_again && source_.features == nullptr;
     return is_for_now ? kShareOfAltitude * steps : steps;

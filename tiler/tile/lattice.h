@@ -31,6 +31,7 @@ class Lattice {
   explicit Lattice(std::vector<Eigen::Vector3d> steps_m) : steps_m_(std::move(steps_m)) {}
   virtual ~Lattice() = default;
 
+  int level_count() const { return static_cast<int>(steps_m_.size()); }
   const Eigen::Vector3d& step_m(int level) const { return steps_m_[level]; }
 
   /// The nearest lattice point; halves go up, so that the answer depends on the place alone.
