@@ -14,7 +14,8 @@ struct PolishRounds {
 /// \param is_above_level_0  does it have a finer level that blends into it?
 /// \param samples_per_triangle  of the mesh as the collapse left it. The fewer triangles there are
 ///        for the samples, the more seams and blends cost of them. With the default effort there is
-///        no polish above level 0 where they are many.
+///        no polish above level 0 where they are many, and one round where they are so few that it
+///        costs all samples for little.
 PolishRounds polish_rounds(int effort, bool is_above_level_0, double samples_per_triangle);
 
 }  // namespace terrane::hierarchy
