@@ -113,9 +113,8 @@ BuildSettings resolve(const BuildCommand& command) {
   apply(command.raster, settings.raster);
   check(settings.raster);
   refuse_other_formats(command, settings);
-  const bool is_native = !settings.tiling.is_geodetic() && !settings.tiling.is_raster();
   if (settings.tiling.is_geodetic()) refuse_native_options(command, settings);
-  if (!is_native) refuse_tile_options(command.tiles, settings.tiling.format);
+  if (!settings.tiling.is_native()) refuse_tile_options(command.tiles, settings.tiling.format);
   if (settings.dem.empty()) {
     throw ConfigError("no DEM given. Name one, or set ingest.dem in the file of --config");
   }
@@ -151,7 +150,7 @@ tiler::BuildResult build_tiles(ingest::Dem& dem, const HeightStatistics& statist
     tiler::write_whole_file(out / "build.toml", to_toml(settings));
   };
   const TilingSettings& tiling = settings.tiling;
-  if (!tiling.is_geodetic() && !tiling.is_raster()) {
+  if (tiling.is_native()) {
     viewer::write_viewer(out);
     write_settings();
     return tiler::build(dem.heights(), dem.place(), statistics, settings.build, out, progress);
@@ -171,15 +170,14 @@ void run(const BuildCommand& command, const CommonOptions& common) {
   const auto progress = make_progress(common.quiet);
   const auto dem = ingest::open_dem(settings.dem, settings.ingest, *progress);
   if (!settings.tiling.is_raster()) tiler::check_size(dem->heights().shape());
-  const bool is_native = !settings.tiling.is_geodetic() && !settings.tiling.is_raster();
-  if (is_native) raise_to_the_ellipsoid(*dem, settings.tiling, *progress);
+  if (settings.tiling.is_native()) raise_to_the_ellipsoid(*dem, settings.tiling, *progress);
   if (!settings.tiling.is_geodetic()) {
     settings.build.features = read_features(settings, *dem, *progress);
   }
   const auto texture = open_texture(settings.drape, *dem);
   settings.build.texture = texture.get();
   const HeightStatistics statistics = ingest::scan_heights(*dem, *progress);
-  if (is_native) {
+  if (settings.tiling.is_native()) {
     tiler::check_place(dem->heights().shape(), dem->place(), statistics, settings.build);
   }
   tiler::OutputFolder(command.out).claim(command.force);

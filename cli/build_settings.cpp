@@ -231,7 +231,7 @@ std::string to_toml(const BuildSettings& settings) {
       "\n[build]\ntolerance_m = {}\ntile_cells = {}\nlevels_per_octave = {}\neffort = {}\n",
       settings.build.tolerance_m, settings.build.tile_cells, settings.build.levels_per_octave,
       settings.build.effort);
-  const bool is_native = !settings.tiling.is_geodetic() && !settings.tiling.is_raster();
+  const bool is_native = settings.tiling.is_native();
   if (!is_native) {
     text += "scheme = " + quoted(settings.tiling.scheme) +
             "\nformat = " + quoted(settings.tiling.format) + "\n";

@@ -22,6 +22,8 @@ struct TilingSettings {
 
   bool is_geodetic() const { return scheme == "geodetic"; }
   bool is_raster() const { return format == "terrarium" || format == "terrain-rgb"; }
+  /// Tiles of the DEM's own grid?
+  bool is_native() const { return !is_geodetic() && !is_raster(); }
   bool has_water_masks() const { return format == "quantized-mesh"; }
 };
 
