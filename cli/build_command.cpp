@@ -146,23 +146,14 @@ std::unique_ptr<TextureSource> open_texture(const ingest::DrapeOptions& drape,
 tiler::BuildResult build_tiles(ingest::Dem& dem, const HeightStatistics& statistics,
                                const BuildSettings& settings, const std::filesystem::path& out,
                                Progress& progress) {
-  const auto write_settings = [&] {
-    tiler::write_whole_file(out / "build.toml", to_toml(settings));
-  };
   const TilingSettings& tiling = settings.tiling;
   if (tiling.is_native()) {
-    viewer::write_viewer(out);
-    write_settings();
     return tiler::build(dem.heights(), dem.place(), statistics, settings.build, out, progress);
   }
-  const tiler::BuildResult result =
-      tiling.is_geodetic()
-          ? build_geodetic(dem, statistics, tiling, settings.features.water, settings.build, out,
-                           progress)
-          : build_raster(dem, statistics, tiling, settings.raster, settings.build, out, progress);
-  // not before: a run that is killed while it resamples leaves nothing in the folder
-  write_settings();
-  return result;
+  return tiling.is_geodetic() ? build_geodetic(dem, statistics, tiling, settings.features.water,
+                                               settings.build, out, progress)
+                              : build_raster(dem, statistics, tiling, settings.raster,
+                                             settings.build, out, progress);
 }
 
 void run(const BuildCommand& command, const CommonOptions& common) {
@@ -183,6 +174,9 @@ void run(const BuildCommand& command, const CommonOptions& common) {
   tiler::OutputFolder(command.out).claim(command.force);
   const tiler::FolderLock lock(command.out);
   const tiler::BuildResult result = build_tiles(*dem, statistics, settings, command.out, *progress);
+  // not before: a run that is killed earlier leaves nothing that the next would not know as its own
+  if (settings.tiling.is_native()) viewer::write_viewer(command.out);
+  tiler::write_whole_file(command.out / "build.toml", to_toml(settings));
   // the build that finished may have been killed while it tidied up
   if (result.was_up_to_date) tiler::OutputFolder(command.out).end();
   report(result, command.out);

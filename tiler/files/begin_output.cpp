@@ -2,25 +2,41 @@
 
 #include <fmt/format.h>
 
+#include <vector>
+
 #include "tiler/files/whole_file.h"
 
 namespace terrane::tiler {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+std::vector<fs::path> entries_of(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> entries;
+  for (const auto& entry : fs::directory_iterator(folder, error)) entries.push_back(entry.path());
+  return entries;
+}
+
+}  // namespace
+
 void begin_output(const fs::path& out, const std::string& key) {
   std::error_code error;
-  const fs::path key_file = out / ".work" / "key";
+  const fs::path work = out / ".work", key_file = work / "key";
   if (fs::exists(key_file, error) && read_whole_file(key_file) == key) return;
-  // what says that an output is whole goes first
+  // from here to its end .work says whose the rest is, also if this run is killed: it goes last
+  fs::create_directories(work, error);
+  fs::remove(key_file, error);
   for (const char* ours : {"terrane.json", "tileset.json", "layer.json", "tiles.json", "tiles",
-                           "content", "tilesets", "subtrees", "west", "east", ".work"}) {
+                           "content", "tilesets", "subtrees", "west", "east"}) {
     fs::remove_all(out / ours, error);
   }
   constexpr int kMostZooms = 40;
   for (int zoom = 0; zoom < kMostZooms; ++zoom) {
     fs::remove_all(out / fmt::format("{}", zoom), error);
   }
+  for (const fs::path& left : entries_of(work)) fs::remove_all(left, error);
   write_whole_file(key_file, key);
 }
 

@@ -80,7 +80,7 @@ void OutputFolder::claim(bool force) const {
         fmt::format("{}: the folder cannot be made ({}). Choose another output folder",
                     root_.string(), error.message()));
   }
-  const bool is_ours = fs::exists(summary(), error) || fs::exists(work() / "key", error);
+  const bool is_ours = fs::exists(summary(), error) || fs::exists(work(), error);
   if (force || is_ours || holds_nothing(root_)) return;
   throw OutputError(fmt::format(
       "{}: holds files that terrane did not write. Choose an empty folder, or add --force to write "

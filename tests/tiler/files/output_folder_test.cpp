@@ -32,6 +32,16 @@ TEST(OutputFolder, MakesWhatIsMissingAndTakesItsOwnAgain) {
   EXPECT_NO_THROW(out.claim(false));
 }
 
+TEST(OutputFolder, TakesAFolderAgainThatARunLeftBeforeItWroteItsKey) {
+  const TemporaryFolder folder;
+  write_whole_file(folder.path() / "7/3/2.terrain", "old");
+  std::filesystem::create_directories(folder.path() / ".work");
+  const OutputFolder out(folder.path());
+  EXPECT_NO_THROW(out.claim(false));
+  out.begin("key");
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "7"));
+}
+
 TEST(OutputFolder, BeginKeepsWorkOfTheSameKeyAndDropsThatOfAnother) {
   const TemporaryFolder folder;
   const OutputFolder out(folder.path());
