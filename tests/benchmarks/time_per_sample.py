@@ -1,20 +1,25 @@
 #!/usr/bin/env python3
 """Builds squares of a DEM, from small to large, and plots CPU time per sample.
 
-time_per_sample.py TERRANE DEM PICTURE.svg [SIDE ...]     sides in samples, from the DEM's middle
+time_per_sample.py [--mirrored] TERRANE DEM PICTURE.svg [SIDE ...]     sides in samples
 
-Prints a Markdown table. Samples are those with data; time is that of the process and its threads.
+The squares are from the DEM's middle; with --mirrored, its middle square of 1,000 samples is repeated,
+every other time mirrored: then squares of all sizes have the same terrain. Prints a Markdown table.
+Samples are those with data; time is that of the process and its threads.
 """
 
+import array
 import json
 import math
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 
 SIDES = (1000, 1450, 2000, 2900, 4100, 5800, 8200, 10000)
+PERIOD = 1000  # samples of what is mirrored
 WIDTH, HEIGHT, LEFT, BOTTOM, RIGHT, TOP = 560, 320, 60, 44, 20, 20
 
 
@@ -24,19 +29,37 @@ def shape_of(dem):
     return said["size"]
 
 
-def build(terrane, dem, side, folder):
-    """(samples with data, CPU seconds, peak memory in MB, levels)."""
+def cut(dem, side, file):
+    """Writes the middle square of a DEM, as large as it has one."""
     columns, rows = shape_of(dem)
     side_columns, side_rows = min(side, columns), min(side, rows)
-    square, out = folder / "square.tif", folder / "tiles"
-    subprocess.run(["gdal_translate", "-q", "-srcwin", str((columns - side_columns) // 2),
-                    str((rows - side_rows) // 2), str(side_columns), str(side_rows), dem, square],
-                   check=True)
+    subprocess.run(["gdal_translate", "-q", "-of", "ENVI", "-ot", "Float32", "-srcwin",
+                    str((columns - side_columns) // 2), str((rows - side_rows) // 2),
+                    str(side_columns), str(side_rows), dem, file], check=True)
+
+
+def mirror(dem, side, file):
+    """Writes a square that repeats the DEM's middle one, every other time mirrored."""
+    cut(dem, PERIOD, file)
+    heights = array.array("f", file.read_bytes())
+    rows = [heights[k * PERIOD:(k + 1) * PERIOD] for k in range(PERIOD)]
+    times = math.ceil(side / (2 * PERIOD))
+    with file.open("wb") as out:
+        for row in ((rows + rows[::-1]) * times)[:side]:
+            out.write((((row + row[::-1]) * times)[:side]).tobytes())
+    header = file.with_suffix(".hdr")
+    header.write_text(re.sub(r"(?m)^(samples|lines)( *= *)\d+", rf"\g<1>\g<2>{side}",
+                             header.read_text()))
+
+
+def build(terrane, square, folder):
+    """(samples with data, CPU seconds, peak memory in MB, levels)."""
+    out = folder / "tiles"
     process = subprocess.Popen([terrane, "--quiet", "build", square, "--tolerance", "5", "--jobs",
                                 "1", "-o", out], stdout=subprocess.DEVNULL)
     _, status, usage = os.wait4(process.pid, 0)
     if status != 0:
-        sys.exit(f"a square of {side} could not be built")
+        sys.exit(f"{square}: could not be built")
     summary = json.loads((out / "terrane.json").read_text())
     return (summary["dem"]["samples_with_data"], usage.ru_utime + usage.ru_stime,
             usage.ru_maxrss / 1024, len(summary["levels"]))
@@ -76,13 +99,17 @@ def svg(points):
     return "\n".join(out) + "\n</svg>\n"
 
 
-def main(terrane, dem, picture, *sides):
+def main(*arguments):
+    write_square = mirror if "--mirrored" in arguments else cut
+    terrane, dem, picture, *sides = [a for a in arguments if a != "--mirrored"]
     print("| square | samples with data | levels | CPU time | per sample | peak memory |\n"
           "|---|---|---|---|---|---|", flush=True)
     points = []
     for side in map(int, sides or SIDES):
         with tempfile.TemporaryDirectory() as folder:
-            samples, seconds, memory_mb, levels = build(terrane, dem, side, pathlib.Path(folder))
+            square = pathlib.Path(folder) / "square.bil"
+            write_square(dem, side, square)
+            samples, seconds, memory_mb, levels = build(terrane, square, pathlib.Path(folder))
         points.append((samples, seconds / samples * 1e6))
         print(f"| {side} | {samples:,} | {levels} | {seconds:.1f} s | {points[-1][1]:.2f} us | "
               f"{memory_mb:.0f} MB |", flush=True)
