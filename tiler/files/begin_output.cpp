@@ -12,10 +12,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<fs::path> entries_of(const fs::path& folder) {
+std::vector<fs::path> entries_but(const fs::path& kept, const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> entries;
-  for (const auto& entry : fs::directory_iterator(folder, error)) entries.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path() != kept) entries.push_back(entry.path());
+  }
   return entries;
 }
 
@@ -25,9 +27,8 @@ void begin_output(const fs::path& out, const std::string& key) {
   std::error_code error;
   const fs::path work = out / ".work", key_file = work / "key";
   if (fs::exists(key_file, error) && read_whole_file(key_file) == key) return;
-  // from here to its end .work says whose the rest is, also if this run is killed: it goes last
-  fs::create_directories(work, error);
-  fs::remove(key_file, error);
+  // the key of no output says whose the rest is, also if this run is killed while it removes it
+  write_whole_file(key_file, "");
   for (const char* ours : {"terrane.json", "tileset.json", "layer.json", "tiles.json", "tiles",
                            "content", "tilesets", "subtrees", "west", "east"}) {
     fs::remove_all(out / ours, error);
@@ -36,7 +37,7 @@ void begin_output(const fs::path& out, const std::string& key) {
   for (int zoom = 0; zoom < kMostZooms; ++zoom) {
     fs::remove_all(out / fmt::format("{}", zoom), error);
   }
-  for (const fs::path& left : entries_of(work)) fs::remove_all(left, error);
+  for (const fs::path& left : entries_but(key_file, work)) fs::remove_all(left, error);
   write_whole_file(key_file, key);
 }
 

@@ -15,8 +15,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool holds_at_most(std::string_view name, const fs::path& folder) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().filename() != name) return false;
+  }
+  return true;
+}
+
+/// No more than a run leaves that was killed before it had written its key?
 bool holds_nothing(const fs::path& folder) {
-  return fs::directory_iterator(folder) == fs::directory_iterator();
+  return holds_at_most(".work", folder) && holds_at_most("key.tmp", folder / ".work");
 }
 
 /// Files of some kind below a folder of an output.
@@ -80,7 +89,7 @@ void OutputFolder::claim(bool force) const {
         fmt::format("{}: the folder cannot be made ({}). Choose another output folder",
                     root_.string(), error.message()));
   }
-  const bool is_ours = fs::exists(summary(), error) || fs::exists(work(), error);
+  const bool is_ours = fs::exists(summary(), error) || fs::exists(work() / "key", error);
   if (force || is_ours || holds_nothing(root_)) return;
   throw OutputError(fmt::format(
       "{}: holds files that terrane did not write. Choose an empty folder, or add --force to write "

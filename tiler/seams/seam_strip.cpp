@@ -94,11 +94,10 @@ Strip strip_of(JoinedTiles&& joined) {
   return strip;
 }
 
-/// Half of the strip at full resolution, the samples that its vertices are, and the heights of
-/// those that a line has between samples.
+/// What one tile has beside a seam at full resolution.
 struct FullSide {
   TileMesh mesh;
-  std::vector<double> line_heights_m;  // NaN at samples
+  std::vector<double> line_heights_m;  // of each vertex that a line has between samples; else NaN
 };
 
 FullSide full_side(const TileSource& source, const TileId& tile, const HeightGrid& grid,

@@ -22,11 +22,12 @@ struct Strip {
 
 /// A strip and the samples that its triangles may cover.
 struct StripOnGrid {
-  Strip strip;  ///< without triangles where both tiles have none
-  Window window;
+  Strip strip;    ///< without triangles where both tiles have none
+  Window window;  ///< in samples of the DEM; of no meaning without triangles
 };
 
-/// The strip of a seam of level 0: of the full resolution.
+/// The strip of a seam of level 0: of the full resolution, with the cells along the seam.
+/// \throws InputError if the DEM cannot be read.
 StripOnGrid leaf_strip(const TileSource& source, const SeamId& seam);
 
 /// The strip of a seam of a higher level.

@@ -34,12 +34,17 @@ TEST(OutputFolder, MakesWhatIsMissingAndTakesItsOwnAgain) {
 
 TEST(OutputFolder, TakesAFolderAgainThatARunLeftBeforeItWroteItsKey) {
   const TemporaryFolder folder;
-  write_whole_file(folder.path() / "7/3/2.terrain", "old");
-  std::filesystem::create_directories(folder.path() / ".work");
   const OutputFolder out(folder.path());
+  std::filesystem::create_directories(folder.path() / ".work");
   EXPECT_NO_THROW(out.claim(false));
-  out.begin("key");
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "7"));
+  write_whole_file(folder.path() / ".work/key.tmp", "ke");
+  EXPECT_NO_THROW(out.claim(false));
+}
+
+TEST(OutputFolder, RefusesAWorkFolderOfOthers) {
+  const TemporaryFolder folder;
+  write_whole_file(folder.path() / ".work/thesis.txt", "precious");
+  EXPECT_THROW(OutputFolder(folder.path()).claim(false), OutputError);
 }
 
 TEST(OutputFolder, BeginKeepsWorkOfTheSameKeyAndDropsThatOfAnother) {
