@@ -142,9 +142,9 @@ class TileBuild {
     // the grid frame's straight lines are not quite the world's: 0.1 % saves most second tries
     StrictOptions options{.tolerance_m = 0.999 * tolerance_m, .effort = source_.effort};
     if (source_.features != nullptr) options.lines = source_.features->tolerance(tile_.level);
-    options.smallest_altitude_cells =
+    options.shape.smallest_altitude_cells =
         source_.lattice.smallest_altitude_steps() * step_m() / frame_.spacing_m();
-    options.steepest_m = source_.steepest * frame_.spacing_m();
+    options.shape.steepest_m = source_.steepest * frame_.spacing_m();
 
     constexpr int kMostTries = 12, kTriesWithPolish = 3;
     for (int tries = 1;; ++tries) {

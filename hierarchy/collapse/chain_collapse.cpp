@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "hierarchy/collapse/morph_guard.h"
+#include "hierarchy/collapse/triangle_shape.h"
 
 namespace terrane::hierarchy {
 namespace {
@@ -164,8 +165,8 @@ class ChainCollapse {
     }
     gather_rings(strip.triangles);
     if (!finer.places.empty()) {
-      guard_.emplace(finer.places, finer.triangles, vertices_, field, options.blend_tolerance_m,
-                     options.smallest_altitude_cells);
+      guard_.emplace(finer.places, finer.triangles, vertices_, field, placer,
+                     options.blend_tolerance_m, options.smallest_altitude_cells);
     }
     for (std::uint32_t v = 0; v < vertices_.size(); ++v) result_.target.push_back(v);
     result_.raised_m.resize(vertices_.size(), std::numeric_limits<double>::quiet_NaN());
@@ -288,7 +289,7 @@ class ChainCollapse {
     FeasibleHeights heights(field_, options_.tolerance_m);
     for (std::size_t k = 0; k + 1 < around.size(); ++k) {
       const Place &a = vertices_[around[k]].place, &b = vertices_[around[k + 1]].place;
-      if (squared_altitude(centre.plan, a.plan, b.plan) <= 0) return std::nullopt;
+      if (orient2d(centre.plan, a.plan, b.plan) <= 0) return std::nullopt;
       if (!heights.add(field_point(centre), field_point(a), field_point(b))) return std::nullopt;
     }
     return heights.best_m();
@@ -305,7 +306,6 @@ class ChainCollapse {
                         place(onto),
                         at,
                         std::numeric_limits<double>::quiet_NaN()};
-    const double altitude = options_.smallest_altitude_cells * kUnitsPerCell;
     std::vector<std::uint32_t> around;
     if (may_be_raised(gone, onto)) {
       around = around_both(gone, onto);
@@ -329,12 +329,12 @@ class ChainCollapse {
     const Place& centre = candidate.place;
     for (std::size_t k = 0; k + 1 < around.size(); ++k) {
       const Place &a = vertices_[around[k]].place, &b = vertices_[around[k + 1]].place;
-      const double altitude2 = squared_altitude(centre.plan, a.plan, b.plan);
-      candidate.altitude2 = std::min(candidate.altitude2, altitude2);
-      if (altitude2 <= 0 || altitude2 < altitude * altitude) {
+      if (!is_upright(centre, a, b, options_.smallest_altitude_cells, placer_)) {
         candidate.worst_m = kRefused;
         return candidate;
       }
+      candidate.altitude2 =
+          std::min(candidate.altitude2, squared_altitude(centre.plan, a.plan, b.plan));
       candidate.worst_m =
           std::max(candidate.worst_m, worst_error_m(field_point(centre), field_point(a),
                                                     field_point(b), field_, options_.tolerance_m));

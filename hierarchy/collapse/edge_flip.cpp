@@ -1,6 +1,5 @@
 #include "hierarchy/collapse/edge_flip.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "hierarchy/collapse/triangle_plane.h"
@@ -11,24 +10,11 @@ namespace {
 // a flip has to save this share of the squared error: equal ones would go back and forth
 constexpr double kLeastGain = 1e-3;
 
-double squared_length(GridPoint a, GridPoint b) {
-  const double x = static_cast<double>(b.x) - a.x, y = static_cast<double>(b.y) - a.y;
-  return x * x + y * y;
-}
-
-bool is_upright(GridPoint a, GridPoint b, GridPoint c, double smallest_altitude_cells) {
-  const auto area = static_cast<double>(orient2d(a, b, c));
-  const double altitude = smallest_altitude_cells * kUnitsPerCell;
-  const double longest2 =
-      std::max({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
-  return area > 0 && area * area >= longest2 * altitude * altitude;
-}
-
 }  // namespace
 
 bool EdgeFlip::is_better(HalfedgeId h, const HalfedgeMesh& mesh,
                          std::span<const TerrainVertex> vertices, const CoveredSamples& samples,
-                         double tolerance_m, double smallest_altitude_cells, double steepest_m) {
+                         double tolerance_m, const ShapeLimits& limits, const Placer& placer) {
   const HalfedgeId o = mesh.opposite(h);
   const TriangleId t0 = HalfedgeMesh::triangle(h), t1 = HalfedgeMesh::triangle(o);
   if (mesh.is_ghost(t0) || mesh.is_ghost(t1)) return false;
@@ -41,15 +27,11 @@ bool EdgeFlip::is_better(HalfedgeId h, const HalfedgeMesh& mesh,
   if (!(is_inside(va) || is_inside(vb)) || !(is_inside(vc) || is_inside(vd))) return false;
   const Place &a = vertices[index(va)].place, &b = vertices[index(vb)].place;
   const Place &c = vertices[index(vc)].place, &d = vertices[index(vd)].place;
-  if (!is_upright(a.plan, d.plan, c.plan, smallest_altitude_cells) ||
-      !is_upright(b.plan, c.plan, d.plan, smallest_altitude_cells)) {
+  if (!is_well_shaped(a, d, c, limits, placer) || !is_well_shaped(b, c, d, limits, placer)) {
     return false;
   }
 
   const TrianglePlane before[] = {{a, b, c}, {b, a, d}}, after[] = {{a, d, c}, {b, c, d}};
-  for (const TrianglePlane& plane : after) {
-    if (plane.squared_rise_m2() > steepest_m * steepest_m) return false;
-  }
   const double dx = static_cast<double>(c.plan.x) - d.plan.x;
   const double dy = static_cast<double>(c.plan.y) - d.plan.y;
   double old_square = 0, new_square = 0;

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "hierarchy/collapse/covered_samples.h"
 #include "hierarchy/collapse/terrain_mesh.h"
+#include "hierarchy/collapse/triangle_shape.h"
 #include "hierarchy/mesh/halfedge_mesh.h"
 
 namespace terrane::hierarchy {
@@ -21,14 +21,13 @@ namespace terrane::hierarchy {
 /// Keeps its scratch space from call to call.
 class EdgeFlip {
  public:
-  /// True if the flipped pair is upright in plan, no thinner than \p smallest_altitude_cells,
-  /// rises no more than \p steepest_m over a cell, is within \p tolerance_m of every sample under
-  /// it, and its sum of squared errors is smaller.
+  /// True if the flipped pair is well shaped (triangle_shape.h), within \p tolerance_m of every
+  /// sample under it, and its sum of squared errors is smaller.
   ///
   /// An edge with both ends on a line, a seam or the outline stays, and none is made.
   bool is_better(HalfedgeId h, const HalfedgeMesh& mesh, std::span<const TerrainVertex> vertices,
-                 const CoveredSamples& samples, double tolerance_m, double smallest_altitude_cells,
-                 double steepest_m = std::numeric_limits<double>::infinity());
+                 const CoveredSamples& samples, double tolerance_m, const ShapeLimits& limits,
+                 const Placer& placer);
 
   /// The samples under the pair that was last better.
   std::span<const CoveredSample> samples() const { return samples_; }

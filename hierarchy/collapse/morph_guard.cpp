@@ -17,13 +17,11 @@ constexpr double kShareOfAltitude = 0.25;
 // with more samples than that under a triangle, all threads look at those that move
 constexpr std::size_t kManySamples = 100;
 
-struct PlanVector {
-  double x, y;
-};
+using PlanVector = PlanPoint;
+using PlanTriangle = std::array<PlanPoint, 3>;
+using Passage = std::array<PlanPoint, 6>;  // corners before and after
 
-PlanVector between(GridPoint a, GridPoint b) {
-  return {static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y};
-}
+PlanVector between(const PlanPoint& a, const PlanPoint& b) { return {b.x - a.x, b.y - a.y}; }
 
 double cross(PlanVector a, PlanVector b) { return a.x * b.y - a.y * b.x; }
 
@@ -34,8 +32,7 @@ double longest(PlanVector u, PlanVector v) {
 
 /// Does the triangle keep its orientation for all t in (0, 1) on its way from a to b, and with
 /// room to spare in between? Twice its area is the quadratic q0 + q1 t + q2 t^2.
-bool keeps_orientation(const std::array<GridPoint, 3>& a, const std::array<GridPoint, 3>& b,
-                       double least_altitude) {
+bool keeps_orientation(const PlanTriangle& a, const PlanTriangle& b, double least_altitude) {
   const PlanVector u0 = between(a[0], a[1]), v0 = between(a[0], a[2]);
   const PlanVector u1 = between(b[0], b[1]), v1 = between(b[0], b[2]);
   const PlanVector du{u1.x - u0.x, u1.y - u0.y}, dv{v1.x - v0.x, v1.y - v0.y};
@@ -55,6 +52,20 @@ bool keeps_orientation(const std::array<GridPoint, 3>& a, const std::array<GridP
   return q0 + lowest_at * (q1 + lowest_at * q2) > std::min({least_area, q0 / 2, at_end / 2});
 }
 
+bool keeps_orientation(const Passage& p, double least_altitude) {
+  return keeps_orientation({p[0], p[1], p[2]}, {p[3], p[4], p[5]}, least_altitude);
+}
+
+/// Is no side longer than that, before or after?
+bool is_short(const Passage& p, double longest_units) {
+  return std::max(longest(between(p[0], p[1]), between(p[0], p[2])),
+                  longest(between(p[3], p[4]), between(p[3], p[5]))) <= longest_units;
+}
+
+PlanPoint over_grid(const Place& place) {
+  return {static_cast<double>(place.plan.x), static_cast<double>(place.plan.y)};
+}
+
 FieldPoint field_point(const Place& place) {
   return {column_of(place.plan), row_of(place.plan), place.height_m};
 }
@@ -63,11 +74,12 @@ FieldPoint field_point(const Place& place) {
 
 MorphGuard::MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
                        const std::vector<TerrainVertex>& coarser, const SampleField& field,
-                       double tolerance_m, double smallest_altitude_cells)
+                       const Placer& placer, double tolerance_m, double smallest_altitude_cells)
     : finer_(std::move(finer)),
       triangles_(std::move(triangles)),
       coarser_(coarser),
       field_(field),
+      placer_(placer),
       tolerance_m_(tolerance_m),
       least_altitude_(kShareOfAltitude * smallest_altitude_cells * kUnitsPerCell),
       target_(finer_.size()),
@@ -99,21 +111,29 @@ void MorphGuard::begin_at(std::span<const std::uint32_t> target) {
   }
 }
 
+/// \param places  of the corners before and after.
+bool MorphGuard::is_upright(const std::array<Place, 6>& places) const {
+  Passage seen;
+  std::ranges::transform(places, seen.begin(), over_grid);
+  if (!keeps_orientation(seen, least_altitude_)) return false;
+  if (is_short(seen, placer_.longest_straight_units())) return true;
+  placer_.look_down(places, seen);
+  return keeps_orientation(seen, least_altitude_);
+}
+
 bool MorphGuard::is_sound(const Corners& triangle, std::span<const VertexId> core,
                           const Place& target) const {
-  std::array<GridPoint, 3> from, to;
+  std::array<Place, 6> places;
   std::array<FieldPoint, 3> begin, end;
   for (std::size_t k = 0; k < 3; ++k) {
     const VertexId coarse = target_[triangle[k]];
-    const Place& last =
+    places[k] = finer_[triangle[k]];
+    places[3 + k] =
         std::ranges::find(core, coarse) != core.end() ? target : coarser_[index(coarse)].place;
-    const Place& first = finer_[triangle[k]];
-    from[k] = first.plan;
-    to[k] = last.plan;
-    begin[k] = field_point(first);
-    end[k] = field_point(last);
+    begin[k] = field_point(places[k]);
+    end[k] = field_point(places[3 + k]);
   }
-  return keeps_orientation(from, to, least_altitude_) &&
+  return is_upright(places) &&
          MovingTriangle(begin, end, field_.slack_cells).stays_within(field_, tolerance_m_);
 }
 

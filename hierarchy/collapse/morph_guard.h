@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -20,11 +21,12 @@ class MorphGuard {
   /// \param finer      places of the finer level, one per vertex of the mesh to be collapsed.
   /// \param triangles  the finer level's.
   /// \param coarser    the mesh's vertices; read at every call, so it must outlive the guard.
+  /// \param placer     of the coarser mesh; must outlive the guard.
   /// \param smallest_altitude_cells  that the triangles of either level have in plan; in between,
   ///                   it may be a quarter.
   MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
              const std::vector<TerrainVertex>& coarser, const SampleField& field,
-             double tolerance_m, double smallest_altitude_cells = 0);
+             const Placer& placer, double tolerance_m, double smallest_altitude_cells = 0);
 
   /// Tells that fine vertices have gone elsewhere already, without a check.
   /// \param target  for each fine vertex: itself, or a vertex that stays; empty: none has gone.
@@ -42,11 +44,13 @@ class MorphGuard {
  private:
   void list_moved(std::span<const VertexId> core);
   bool is_sound(const Corners& triangle, std::span<const VertexId> core, const Place& target) const;
+  bool is_upright(const std::array<Place, 6>& places) const;
 
   std::vector<Place> finer_;
   std::vector<Corners> triangles_;
   const std::vector<TerrainVertex>& coarser_;
   const SampleField& field_;
+  const Placer& placer_;
   double tolerance_m_, least_altitude_;
 
   std::vector<VertexId> target_;

@@ -11,7 +11,6 @@
 #include "hierarchy/collapse/polish_rounds.h"
 #include "hierarchy/collapse/star_error.h"
 #include "hierarchy/collapse/star_fit.h"
-#include "hierarchy/collapse/triangle_plane.h"
 
 namespace terrane::hierarchy {
 namespace {
@@ -38,11 +37,6 @@ constexpr int kMostLearnt = 4;
 // a sweep that collapses less than one in this many triangles is the last
 constexpr std::int64_t kTooFew = 500;
 
-double squared_length(GridPoint a, GridPoint b) {
-  const double x = static_cast<double>(b.x) - a.x, y = static_cast<double>(b.y) - a.y;
-  return x * x + y * y;
-}
-
 /// 1 / \p parts of the way, rounded to the lattice.
 GridPoint part_of_way(GridPoint from, GridPoint to, std::int32_t parts) {
   return {from.x + (to.x - from.x) / parts, from.y + (to.y - from.y) / parts};
@@ -67,7 +61,7 @@ class StrictCollapse {
         placer_(placer),
         options_(options),
         sample_count_(field.kept.empty() ? static_cast<double>(field.heights_m.size()) : 0),
-        smallest_altitude_cells_(static_cast<float>(options.smallest_altitude_cells)),
+        smallest_altitude_cells_(static_cast<float>(options.shape.smallest_altitude_cells)),
         field_(field),
         samples_(field, vertices_, mesh_.triangles(), mesh_.triangle_count()),
         changed_(vertices_.size(), 0),
@@ -78,8 +72,8 @@ class StrictCollapse {
     }
     if (!input.lines.empty()) lines_.emplace(input.lines, vertices_.size(), options.lines);
     if (!finer.places.empty()) {
-      guard_.emplace(split_like(mesh_, finer.places), finer.triangles, vertices_, field,
-                     options.tolerance_m, options.smallest_altitude_cells);
+      guard_.emplace(split_like(mesh_, finer.places), finer.triangles, vertices_, field, placer,
+                     options.tolerance_m, options.shape.smallest_altitude_cells);
       guard_->begin_at(finer.target);
     } else {
       parent_.resize(vertices_.size());
@@ -153,8 +147,8 @@ class StrictCollapse {
       const HalfedgeId h = HalfedgeMesh::halfedge(t, k);
       const TriangleId across = HalfedgeMesh::triangle(mesh_.opposite(h));
       if (!is_polished(mesh_.start(h)) || !is_polished(mesh_.end(h))) continue;
-      if (across < t || !flip_.is_better(h, mesh_, vertices_, samples_, tolerance_m_,
-                                         options_.smallest_altitude_cells, options_.steepest_m)) {
+      if (across < t ||
+          !flip_.is_better(h, mesh_, vertices_, samples_, tolerance_m_, options_.shape, placer_)) {
         continue;
       }
       mesh_.flip(h);
@@ -436,19 +430,10 @@ class StrictCollapse {
 
   /// Is no triangle of the star turned over, too thin or too steep?
   bool is_sound(const Place& place) const {
-    const GridPoint centre = place.plan;
     for (std::size_t k = 0; k < star_.sector_count(); ++k) {
-      const GridPoint from = star_.corner(k).plan, to = star_.corner(k + 1).plan;
-      const std::int64_t area = orient2d(centre, from, to);
-      if (area <= 0) return false;
-      // altitude = twice the area / longest side; squared, as roots took a quarter of all the time
-      const double longest2 = std::max(
-          {squared_length(centre, from), squared_length(centre, to), squared_length(from, to)});
-      const double altitude = options_.smallest_altitude_cells * kUnitsPerCell;
-      const auto twice_area = static_cast<double>(area);
-      if (twice_area * twice_area < longest2 * altitude * altitude) return false;
-      const TrianglePlane plane(place, star_.corner(k), star_.corner(k + 1));
-      if (plane.squared_rise_m2() > options_.steepest_m * options_.steepest_m) return false;
+      if (!is_well_shaped(place, star_.corner(k), star_.corner(k + 1), options_.shape, placer_)) {
+        return false;
+      }
     }
     return true;
   }

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "hierarchy/collapse/line_chains.h"
 #include "hierarchy/collapse/sample_field.h"
 #include "hierarchy/collapse/terrain_mesh.h"
+#include "hierarchy/collapse/triangle_shape.h"
 #include "hierarchy/mesh/stencil.h"
 
 namespace terrane::hierarchy {
@@ -20,11 +20,8 @@ inline constexpr int kDefaultEffort = 1, kTopEffort = 3;
 struct StrictOptions {
   /// Largest vertical distance to any sample, in metres.
   double tolerance_m = 1;
-  /// Smallest altitude in plan of a new triangle, in cells: rounding must not turn it over.
-  double smallest_altitude_cells = 0;
-  /// Most that a new triangle may rise, in metres per cell: what later levels' rounding moves it by
-  /// must not become too much in height.
-  double steepest_m = std::numeric_limits<double>::infinity();
+  /// Of new triangles.
+  ShapeLimits shape;
   /// 0 to 3. Above 0, vertices are moved to where the squared error is least, without a finer level
   /// edges are flipped, too, and collapses tried again, in more and more rounds (polish_rounds.h);
   /// at 1 without a finer level near locked vertices alone. 0: without a finer level, triangles

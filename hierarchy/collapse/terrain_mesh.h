@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "core/lattice_point.h"
@@ -42,7 +43,14 @@ struct TerrainMesh {
   std::vector<std::uint8_t> in_water = {};  ///< of each triangle, 1 or 0; empty: all are on land
 };
 
-/// Rounds places to the written lattice.
+/// A place in plan where it need not be one of the grid's: x and y as in GridPoint.
+struct PlanPoint {
+  double x = 0, y = 0;
+
+  bool operator==(const PlanPoint&) const = default;
+};
+
+/// Rounds places to the written lattice, and knows how the world has them.
 class Placer {
  public:
   virtual ~Placer() = default;
@@ -60,6 +68,18 @@ class Placer {
   /// Is the straight edge between two written places near enough to the straight line between them
   /// on the grid, so that samples on that line count as covered?
   virtual bool is_straight(const Place& a, const Place& b) const = 0;
+
+  /// Length over the grid, in grid units, up to which a triangle's sides are so straight in the
+  /// world that it is upright there if it is so over the grid.
+  virtual double longest_straight_units() const { return std::numeric_limits<double>::infinity(); }
+
+  /// Some places seen from above as the world has them, where edges are straight: along the plumb
+  /// line in their middle, in grid units of a cell's shorter side.
+  virtual void look_down(std::span<const Place> places, std::span<PlanPoint> seen) const {
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      seen[k] = {static_cast<double>(places[k].plan.x), static_cast<double>(places[k].plan.y)};
+    }
+  }
 };
 
 }  // namespace terrane::hierarchy

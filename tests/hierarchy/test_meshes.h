@@ -41,6 +41,28 @@ class ExactPlacer final : public Placer {
   bool is_straight(const Place&, const Place&) const override { return true; }
 };
 
+/// A world in which a row of the grid is a parabola, bend * column^2 cells below its beginning: a
+/// straight line of it passes bend * c^2 / 4 below the middle of a row's c cells.
+class BentPlacer final : public Placer {
+ public:
+  explicit BentPlacer(double bend) : bend_(bend) {}
+
+  Place place(GridPoint plan, double height_m) const override {
+    return ExactPlacer().place(plan, height_m);
+  }
+  bool is_straight(const Place&, const Place&) const override { return false; }
+  double longest_straight_units() const override { return kUnitsPerCell; }
+  void look_down(std::span<const Place> places, std::span<PlanPoint> seen) const override {
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const double column = column_of(places[k].plan), row = row_of(places[k].plan);
+      seen[k] = {kUnitsPerCell * column, -kUnitsPerCell * (row + bend_ * column * column)};
+    }
+  }
+
+ private:
+  double bend_;
+};
+
 /// The full-resolution mesh of a grid, its rim marked as outline.
 inline TerrainMesh terrain_of(const HeightGrid& grid) {
   const GridTriangles full = triangulate(grid, grid.window);

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/errors.h"
@@ -16,6 +17,13 @@ namespace {
 using hierarchy::GridPoint;
 using hierarchy::kUnitsPerCell;
 using hierarchy::Place;
+
+// the ends of a side are up to 0.71 steps off by rounding, and a whole step is what counts as
+// covered
+constexpr double kShareOfStep = 0.2;
+
+// what the corners of most triangles differ by in height
+constexpr double kRelief_m = 1000;
 
 GridPoint grid_point(double column, double row) {
   return {static_cast<std::int32_t>(std::lround(column * kUnitsPerCell)),
@@ -116,6 +124,8 @@ void TileFrame::derive(const Window& window) {
   Eigen::Matrix3d world_per_grid;
   world_per_grid << per_column, per_row, middle.up;
   grid_per_world_ = world_per_grid.inverse();
+  along_row_ = per_column;
+  handedness_ = per_column.cross(-per_row).dot(middle.up) > 0 ? 1 : -1;
   // parts of a cell are equal in columns and rows, whatever the parallel
   spacing_m_ =
       lattice_.over_grid({}, level_) ? per_row.norm() : std::min(per_column.norm(), per_row.norm());
@@ -130,6 +140,39 @@ void TileFrame::derive(const Window& window) {
       (depth(c + u, r + v) - depth(c - u, r + v) - depth(c + u, r - v) + depth(c - u, r - v)) /
           (4 * u * v),
       (depth(c, r + v) + depth(c, r - v)) / (2 * v * v);
+  longest_straight_units_ =
+      kUnitsPerCell * longest_straight_m() / std::max(per_column.norm(), per_row.norm());
+}
+
+/// A straight line bends over the grid with the square of its length, and the plumb lines at its
+/// ends lean with it.
+double TileFrame::longest_straight_m() const {
+  if (lattice_.over_grid({}, level_)) return std::numeric_limits<double>::infinity();
+  double bend_per_m2 = 0, lean_per_m = 0;
+  constexpr int kParts = 4;
+  const auto at = [&](int i, int j) {
+    return GridPoint{static_cast<std::int32_t>(half_columns_ * 2 * kUnitsPerCell * i / kParts),
+                     -static_cast<std::int32_t>(half_rows_ * 2 * kUnitsPerCell * j / kParts)};
+  };
+  const auto take_in = [&](GridPoint a, GridPoint b) {
+    const Plumb from = plumb(hierarchy::column_of(a), hierarchy::row_of(a));
+    const Plumb to = plumb(hierarchy::column_of(b), hierarchy::row_of(b));
+    const double length_m = (to.base - from.base).norm();
+    if (!(length_m > 0)) return;
+    bend_per_m2 = std::max(bend_per_m2, bend_m({.plan = a}, {.plan = b}) / (length_m * length_m));
+    lean_per_m = std::max(lean_per_m, (to.up - from.up).norm() / length_m);
+  };
+  for (int j = 0; j < kParts; ++j) {
+    for (int i = 0; i < kParts; ++i) {
+      take_in(at(i, j), at(i + 1, j));
+      take_in(at(i, j), at(i, j + 1));
+      take_in(at(i, j), at(i + 1, j + 1));
+      take_in(at(i + 1, j), at(i, j + 1));
+    }
+  }
+  const double most_m = kShareOfStep * lattice_.step_m(level_).x();
+  const double off_per_m = lean_per_m * kRelief_m / 2;
+  return 2 * most_m / (off_per_m + std::sqrt(off_per_m * off_per_m + 4 * bend_per_m2 * most_m));
 }
 
 Plumb TileFrame::plumb(double column, double row) const {
@@ -251,9 +294,29 @@ double TileFrame::bend_m(const Place& a, const Place& b) const {
   return (gap - gap.dot(middle.up) * middle.up).norm();
 }
 
+void TileFrame::look_down(std::span<const Place> places,
+                          std::span<hierarchy::PlanPoint> seen) const {
+  const auto n = static_cast<double>(places.size());
+  double column = 0, row = 0;
+  for (const Place& place : places) {
+    column += hierarchy::column_of(place.plan) / n;
+    row += hierarchy::row_of(place.plan) / n;
+  }
+  const Plumb middle = plumb(column, row);
+  const Eigen::Vector3d right = (along_row_ - along_row_.dot(middle.up) * middle.up).normalized();
+  const Eigen::Vector3d upwards = handedness_ * middle.up.cross(right);
+  const double units_per_m = kUnitsPerCell / spacing_m_;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const double at_column = hierarchy::column_of(places[k].plan);
+    const double at_row = hierarchy::row_of(places[k].plan);
+    const Plumb foot = plumb(at_column, at_row);
+    const Eigen::Vector3d off =
+        foot.base - middle.base + (places[k].height_m + drop_m(at_column, at_row)) * foot.up;
+    seen[k] = {off.dot(right) * units_per_m, off.dot(upwards) * units_per_m};
+  }
+}
+
 bool TileFrame::is_straight(const Place& a, const Place& b) const {
-  // the ends are up to 0.71 steps off by rounding, and a whole step is what counts as covered
-  constexpr double kShareOfStep = 0.2;
   return bend_m(a, b) <= kShareOfStep * lattice_.step_m(level_).x();
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "core/height_grid.h"
@@ -65,6 +66,9 @@ class TileFrame final : public hierarchy::Placer {
   double over_datum_m(hierarchy::GridPoint plan, double height_m) const override;
   double bend_m(const hierarchy::Place& a, const hierarchy::Place& b) const override;
   bool is_straight(const hierarchy::Place& a, const hierarchy::Place& b) const override;
+  double longest_straight_units() const override { return longest_straight_units_; }
+  void look_down(std::span<const hierarchy::Place> places,
+                 std::span<hierarchy::PlanPoint> seen) const override;
 
   /// Largest distance to the exact map that was found, doubled.
   double accuracy_m() const { return accuracy_m_; }
@@ -74,6 +78,7 @@ class TileFrame final : public hierarchy::Placer {
  private:
   bool fit(const WorldFrame& world, const Window& window, int degree, double wanted_accuracy_m);
   void derive(const Window& window);
+  double longest_straight_m() const;
   hierarchy::Place solve(const Eigen::Vector3d& at) const;
   hierarchy::Place place_of(const Lattice::OverGrid& at) const;
 
@@ -85,9 +90,12 @@ class TileFrame final : public hierarchy::Placer {
   /// 6 x (degree + 1)^2: base and up, powers of the column fastest
   Eigen::Matrix<double, 6, Eigen::Dynamic> coefficients_;
   Eigen::Matrix3d grid_per_world_;  // (column, row, height) per metre at the middle
+  Eigen::Vector3d along_row_;       // that columns grow along, at the middle
+  double handedness_ = 1;           // -1 if the grid is mirrored
   Eigen::Vector3d curvature_;       // of the drop: column^2, column row, row^2
   double accuracy_m_ = 0;
   double spacing_m_ = 0;
+  double longest_straight_units_ = 0;
 };
 
 }  // namespace terrane::tiler

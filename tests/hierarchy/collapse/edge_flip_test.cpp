@@ -40,7 +40,7 @@ class Quad {
   bool is_better(double tolerance_m = 100) {
     const CoveredSamples samples(field_, vertices_, triangles(), mesh_.triangle_count());
     return flip_.is_better(HalfedgeMesh::halfedge(TriangleId{0}, 2), mesh_, vertices_, samples,
-                           tolerance_m, 0);
+                           tolerance_m, {}, ExactPlacer());
   }
   TerrainVertex& vertex(std::size_t k) { return vertices_[k]; }
 

@@ -26,13 +26,14 @@ class FlatGuard : public ::testing::Test {
   }
 
   MorphGuard guard() const {
-    return MorphGuard(finer_, mesh_.triangles, mesh_.vertices, field_, 1);
+    return MorphGuard(finer_, mesh_.triangles, mesh_.vertices, field_, placer_, 1);
   }
 
   HeightGrid grid_;
   TerrainMesh mesh_;
   SampleField field_ = field_of(grid_);
   std::vector<Place> finer_;
+  ExactPlacer placer_;
 };
 
 TEST_F(FlatGuard, AllowsAVertexToMoveInsideItsStar) {
@@ -41,6 +42,21 @@ TEST_F(FlatGuard, AllowsAVertexToMoveInsideItsStar) {
 
 TEST_F(FlatGuard, RefusesToTurnATriangleOver) {
   EXPECT_FALSE(guard().allows(std::array{VertexId{12}}, cell(4, 1, 0)));
+}
+
+TEST_F(FlatGuard, RefusesToTurnATriangleOverInTheWorld) {
+  // there the straight side from (0, 1) to (4, 1) passes 2 cells below (2, 1)
+  const testing::BentPlacer bent(0.5);
+  const std::vector<Place> places{cell(0, 1, 0), cell(4, 1, 0), cell(2, 4, 0)};
+  std::vector<TerrainVertex> vertices;
+  for (const Place& place : places) vertices.push_back({.place = place});
+  const auto allows_in = [&](const Placer& world, double row) {
+    return MorphGuard(places, {{1, 0, 2}}, vertices, field_, world, 1)
+        .allows(std::array{VertexId{2}}, cell(2, row, 0));
+  };
+  EXPECT_TRUE(allows_in(placer_, 2.5));
+  EXPECT_FALSE(allows_in(bent, 2.5));
+  EXPECT_TRUE(allows_in(bent, 3.5));
 }
 
 TEST_F(FlatGuard, RefusesToLeaveTheTolerance) {

@@ -125,7 +125,7 @@ TEST(StrictCollapse, MakesNoTriangleSteeperThanAskedFor) {
   ASSERT_GT(steepest_m(collapse(grid, 25).mesh), wanted_m) << "or this shows nothing";
   const StrictResult result =
       collapse_strictly(full, field_of(grid), ExactPlacer(), {},
-                        {.tolerance_m = 25, .steepest_m = wanted_m, .effort = 3});
+                        {.tolerance_m = 25, .shape = {.steepest_m = wanted_m}, .effort = 3});
   EXPECT_LE(steepest_m(result.mesh), wanted_m);
   EXPECT_LT(result.mesh.triangles.size(), full.triangles.size() / 2);
 }

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <numbers>
+
 #include "tests/tiler/test_dem.h"
 
 namespace terrane::tiler {
@@ -64,6 +69,55 @@ TEST_F(GeographicTile, LongEdgeAlongAParallelIsNotStraight) {
   };
   EXPECT_TRUE(frame_.is_straight(at(10), at(12)));
   EXPECT_FALSE(frame_.is_straight(at(0), at(64)));
+}
+
+TEST_F(GeographicTile, LooksDownOnTrianglesAsTheWorldHasThem) {
+  const auto at = [&](double column, double row, double height_m) {
+    return Place{{static_cast<std::int32_t>(column * kUnitsPerCell),
+                  static_cast<std::int32_t>(-row * kUnitsPerCell)},
+                 height_m - frame_.drop_m(column, row)};
+  };
+  const std::array places{at(3, 60, 2000), at(61, 59, 300), at(30.5, 59.25, 1500)};
+  std::array<hierarchy::PlanPoint, 3> seen;
+  frame_.look_down(places, seen);
+  const auto& [a, b, c] = seen;
+  const double units2 = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+
+  const std::array<GridPosition, 4> exact_at{{{64 + 3, 128 + 60},
+                                              {64 + 61, 128 + 59},
+                                              {64 + 30.5, 128 + 59.25},
+                                              {64 + 31.5, 128 + 59.417}}};
+  const std::vector<Plumb> plumbs = world_.plumbs(exact_at);
+  const auto corner = [&](int k, double height_m) -> Eigen::Vector3d {
+    return plumbs[k].base + height_m * plumbs[k].up;
+  };
+  const Eigen::Vector3d origin = corner(0, 2000);
+  const double m2 = (corner(1, 300) - origin).cross(corner(2, 1500) - origin).dot(plumbs[3].up);
+  const double units_per_m = kUnitsPerCell / frame_.spacing_m();
+  EXPECT_NEAR(units2 / (m2 * units_per_m * units_per_m), 1, 1e-4);
+}
+
+/// A tile of 1024 cells of 3 arc-seconds.
+TEST(WideGeographicTile, SeesHowFarAParallelLiesBesideTheStraightLine) {
+  const GridShape shape{1025, 1025};
+  const GeographicPlace place({-124, 50}, 1.0 / 1200);
+  const WorldFrame world(place, shape);
+  const Pyramid pyramid(shape, 64);
+  const Lattice lattice(pyramid, world, {1, 0, 2000, ""}, 5);
+  const TileFrame frame(world, lattice, {0, 0, 1025, 1025}, 0);
+  const auto at = [](int column) {
+    return Place{{column * kUnitsPerCell, -512 * kUnitsPerCell}, 0};
+  };
+  const std::array places{at(352), at(672), at(512)};
+  std::array<hierarchy::PlanPoint, 3> seen;
+  frame.look_down(places, seen);
+  const double off_cells = ((seen[0].y + seen[1].y) / 2 - seen[2].y) / kUnitsPerCell;
+  // a parallel's geodesic curvature is the latitude's tangent / R
+  const double latitude = (50 - 512.0 / 1200) * std::numbers::pi / 180;
+  const double length_m = std::cos(latitude) * 6.388e6 * (320.0 / 1200) * std::numbers::pi / 180;
+  const double sagitta_m = length_m * length_m / (8 * 6.388e6) * std::tan(latitude);
+  EXPECT_NEAR(off_cells * frame.spacing_m(), sagitta_m, sagitta_m / 100);
+  EXPECT_GT(320.0 * kUnitsPerCell, frame.longest_straight_units());
 }
 
 }  // namespace
