@@ -8,16 +8,14 @@
 #include "hierarchy/collapse/edge_flip.h"
 #include "hierarchy/collapse/morph_guard.h"
 #include "hierarchy/collapse/near_locked.h"
+#include "hierarchy/collapse/place_choice.h"
 #include "hierarchy/collapse/polish_rounds.h"
-#include "hierarchy/collapse/star_error.h"
-#include "hierarchy/collapse/star_fit.h"
 
 namespace terrane::hierarchy {
 namespace {
 
-// shares that were best on St. Helens from 1 to 20 m (docs/benchmarks.md, Choices)
+// a share that was best on St. Helens from 1 to 20 m (docs/benchmarks.md, Choices)
 constexpr double kTriangleShare = 0.8;
-constexpr float kIntervalMargin = 0.2F;
 
 // triangles in a row: with their samples they fit a second-level cache
 constexpr std::uint32_t kBlock = 8192;
@@ -28,27 +26,8 @@ constexpr int kNearEdges = 2;
 // how far vertices try to go to each neighbour, round by round: 1/4, 1/2, 1/8, 1/16 of the way
 constexpr std::int32_t kPartsOfWay[] = {4, 2, 8, 16};
 
-// how far from its middle a core looks for more places: 1/4 of the way to each neighbour
-constexpr std::int32_t kPartsBesideMiddle = 4;
-
-// samples that a place is held against one after the other, if it first was not
-constexpr int kMostLearnt = 4;
-
 // a sweep that collapses less than one in this many triangles is the last
 constexpr std::int64_t kTooFew = 500;
-
-/// 1 / \p parts of the way, rounded to the lattice.
-GridPoint part_of_way(GridPoint from, GridPoint to, std::int32_t parts) {
-  return {from.x + (to.x - from.x) / parts, from.y + (to.y - from.y) / parts};
-}
-
-/// A place worth trying for the new vertex.
-struct Candidate {
-  GridPoint plan;
-  double height_m = 0;  ///< what to take where no sample decides
-  StarHeights heights;
-  bool is_rejected = false;
-};
 
 class StrictCollapse {
  public:
@@ -61,9 +40,10 @@ class StrictCollapse {
         placer_(placer),
         options_(options),
         sample_count_(field.kept.empty() ? static_cast<double>(field.heights_m.size()) : 0),
-        smallest_altitude_cells_(static_cast<float>(options.shape.smallest_altitude_cells)),
-        field_(field),
         samples_(field, vertices_, mesh_.triangles(), mesh_.triangle_count()),
+        guard_(guard_of(finer, field)),
+        choice_({mesh_, vertices_, samples_, field, placer, options.shape,
+                 guard_ ? &*guard_ : nullptr}),
         changed_(vertices_.size(), 0),
         disturbed_(vertices_.size(), 0),
         tested_(mesh_.triangle_count() * 3, 0) {
@@ -71,11 +51,7 @@ class StrictCollapse {
       if (mesh_.is_split(VertexId{v})) vertices_[v].kind = VertexKind::kLocked;
     }
     if (!input.lines.empty()) lines_.emplace(input.lines, vertices_.size(), options.lines);
-    if (!finer.places.empty()) {
-      guard_.emplace(split_like(mesh_, finer.places), finer.triangles, vertices_, field, placer,
-                     options.tolerance_m, options.shape.smallest_altitude_cells);
-      guard_->begin_at(finer.target);
-    } else {
+    if (!guard_) {
       parent_.resize(vertices_.size());
       for (std::uint32_t v = 0; v < vertices_.size(); ++v) parent_[v] = VertexId{v};
       for (std::uint32_t v = 0; v < finer.target.size(); ++v)
@@ -85,10 +61,11 @@ class StrictCollapse {
 
   StrictResult run(std::size_t given_vertices) {
     // triangles leave slack for the edges, which come last; above level 0 the blend leaves enough
-    tolerance_m_ = (guard_ ? 1 : kTriangleShare) * options_.tolerance_m;
-    tries_more_places_ = guard_ && options_.effort > 0;
+    const bool tries_more_places = guard_ && options_.effort > 0;
+    const double share = guard_ ? 1 : kTriangleShare;
+    choice_.set_search({share * options_.tolerance_m, tries_more_places});
     sweep([this](std::uint32_t triangle) { return sweep_triangle(TriangleId{triangle}); });
-    tolerance_m_ = options_.tolerance_m;
+    choice_.set_search({options_.tolerance_m, tries_more_places});
     std::ranges::fill(tested_, 0);
     if (options_.effort > 0 || guard_) collapse_edges();
     if (options_.has_polish) polish();
@@ -105,6 +82,14 @@ class StrictCollapse {
     return all;
   }
 
+  std::optional<MorphGuard> guard_of(const FinerLevel& finer, const SampleField& field) const {
+    if (finer.places.empty()) return std::nullopt;
+    MorphGuard guard(split_like(mesh_, finer.places), finer.triangles, vertices_, field, placer_,
+                     options_.tolerance_m, options_.shape.smallest_altitude_cells);
+    guard.begin_at(finer.target);
+    return guard;
+  }
+
   std::int64_t collapse_edges() {
     const std::int64_t before = result_.edge_collapses;
     sweep([this](std::uint32_t triangle) { return sweep_edges(TriangleId{triangle}); });
@@ -116,7 +101,7 @@ class StrictCollapse {
     const auto [everywhere, near] =
         polish_rounds(options_.effort, guard_.has_value(),
                       sample_count_ / static_cast<double>(mesh_.live_triangle_count()));
-    tries_more_places_ = true;
+    choice_.set_search({options_.tolerance_m, true});
     int idle_rounds = 0;
     for (int round = 0; round < everywhere + near; ++round) {
       if (idle_rounds == std::ssize(kPartsOfWay)) return;
@@ -147,8 +132,8 @@ class StrictCollapse {
       const HalfedgeId h = HalfedgeMesh::halfedge(t, k);
       const TriangleId across = HalfedgeMesh::triangle(mesh_.opposite(h));
       if (!is_polished(mesh_.start(h)) || !is_polished(mesh_.end(h))) continue;
-      if (across < t ||
-          !flip_.is_better(h, mesh_, vertices_, samples_, tolerance_m_, options_.shape, placer_)) {
+      if (across < t || !flip_.is_better(h, mesh_, vertices_, samples_, options_.tolerance_m,
+                                         options_.shape, placer_)) {
         continue;
       }
       mesh_.flip(h);
@@ -163,21 +148,9 @@ class StrictCollapse {
     if (!is_polished(v) || mesh_.outgoing(v) == kNoHalfedge) return;
     if (vertices_[index(v)].kind != VertexKind::kInterior) return;
     walker_.around_vertex(v, stencil_);
-    gather_few();
-    const Place here = vertices_[index(v)].place;
-    here_ = &here;
-    water_m_ = vertices_[index(v)].water_m;
-    candidates_.clear();
-    candidates_.push_back({here.plan, here.height_m});
-    for (const VertexId to : stencil_.polygon) {
-      const GridPoint there = vertices_[index(to)].place.plan;
-      candidates_.push_back({part_of_way(here.plan, there, parts_of_way), here.height_m});
-    }
-    const std::optional<Place> place = best_candidate();
-    here_ = nullptr;
-    if (!place || place->lattice == here.lattice) return;
-    samples_.share_out(star_.triangles(), star_.samples(), star_.keen_count(),
-                       judge_.sectors(star_));
+    const std::optional<Place> place = choice_.for_vertex(stencil_, v, parts_of_way);
+    if (!place) return;
+    choice_.hand_over(samples_);
     vertices_[index(v)].place = *place;
     ++result_.moves;
     changed_[index(v)] = sweep_;
@@ -266,8 +239,9 @@ class StrictCollapse {
     if (boundary.type == BoundaryType::kFixed || is_water_meeting_land(boundary)) {
       return Collapsibility::kBoundary;
     }
-    const auto best = best_place(boundary);
-    if (!best) return refusal_;
+    const auto best =
+        boundary.onto ? choice_.onto_corner(stencil_, *boundary.onto) : choice_.for_core(stencil_);
+    if (!best) return choice_.refusal();
     commit(*best, boundary.onto.value_or(stencil_.core[0]));
     return Collapsibility::kYes;
   }
@@ -280,162 +254,6 @@ class StrictCollapse {
       const float other_m = vertices_[index(v)].water_m;
       return other_m != water_m && !(std::isnan(other_m) && std::isnan(water_m));
     });
-  }
-
-  void list_candidates() {
-    candidates_.clear();
-    std::int64_t x = 0, y = 0;
-    double height_m = 0;
-    for (const VertexId v : stencil_.core_span()) {
-      const Place& place = vertices_[index(v)].place;
-      x += place.plan.x;
-      y += place.plan.y;
-      height_m += place.height_m;
-      candidates_.push_back({place.plan, place.height_m});
-    }
-    const std::int64_t n = stencil_.core_size;
-    candidates_.push_back({{static_cast<std::int32_t>(x / n), static_cast<std::int32_t>(y / n)},
-                           height_m / static_cast<double>(n)});
-    if (tries_more_places_) list_more_candidates(candidates_.back());
-  }
-
-  /// Halfway from the middle to two corners, and places around it.
-  void list_more_candidates(Candidate middle) {
-    for (std::size_t end = 0; end < 2; ++end) {
-      const Candidate there = candidates_[end];
-      candidates_.push_back(
-          {part_of_way(middle.plan, there.plan, 2), (middle.height_m + there.height_m) / 2});
-    }
-    for (const VertexId to : stencil_.polygon) {
-      const GridPoint there = vertices_[index(to)].place.plan;
-      candidates_.push_back({part_of_way(middle.plan, there, kPartsBesideMiddle), middle.height_m});
-    }
-  }
-
-  /// Where the core may go; refusal_ says why if nowhere.
-  std::optional<Place> best_place(const BoundaryVerdict& boundary) {
-    gather_few();
-    refusal_ = Collapsibility::kNotStarShaped;
-    if (boundary.onto) {
-      star_.gather_rest(samples_);
-      return onto_line(vertices_[index(*boundary.onto)].place);
-    }
-
-    water_m_ = vertices_[index(stencil_.core[0])].water_m;
-    list_candidates();
-    return best_candidate();
-  }
-
-  /// The place of the candidate with the least squared error among those that may be written; where
-  /// there are keen samples, with the least at those.
-  std::optional<Place> best_candidate() {
-    if (star_.sample_count() > 0) {
-      if (!fit_candidates()) return std::nullopt;
-    }
-    star_.gather_rest(samples_);
-    const bool is_judged_by_keen = star_.keen_count() > 0;
-    if (!is_judged_by_keen) fit_candidates();
-    while (Candidate* best = least_squared_error()) {
-      bool is_worth_it = !is_judged_by_keen || fit(*best);
-      for (int times = 0; is_worth_it && times < kMostLearnt; ++times) {
-        has_learnt_ = false;
-        if (const std::optional<Place> place = written(*best)) return place;
-        is_worth_it = has_learnt_ && fit(*best);
-      }
-      best->is_rejected = true;
-    }
-    return std::nullopt;
-  }
-
-  void gather_few() {
-    star_.gather_few(stencil_, mesh_, vertices_, samples_);
-    judge_.begin();
-  }
-
-  /// Rejects the candidates that no height keeps near the samples gathered so far.
-  /// \return whether one is left.
-  bool fit_candidates() {
-    bool is_any_left = false;
-    for (Candidate& candidate : candidates_) {
-      if (!candidate.is_rejected) candidate.is_rejected = !fit(candidate);
-      is_any_left = is_any_left || !candidate.is_rejected;
-    }
-    return is_any_left;
-  }
-
-  std::optional<Place> onto_line(const Place& place) {
-    candidates_.assign(1, {place.plan, place.height_m});
-    if (!fit(candidates_[0]) || !is_sound(place)) return std::nullopt;
-    refusal_ = Collapsibility::kOverTolerance;
-    if (!holds(place) || !blends(place)) return std::nullopt;
-    return place;
-  }
-
-  /// Is the star around a place near all samples, those that the reference leaves out as well? The
-  /// worst of these is learnt.
-  bool holds(const Place& place) {
-    if (!judge_.holds(star_, place, tolerance_m_)) return false;
-    if (!field_.is_backed()) return true;
-    CoveredSample worst;
-    if (worst_under_star(star_, place, field_, worst) <= tolerance_m_) return true;
-    star_.learn(worst);
-    has_learnt_ = true;
-    return false;
-  }
-
-  /// Can the finer level's vertices that are in the core go to this place?
-  bool blends(const Place& place) {
-    if (!guard_ || guard_->allows(stencil_.core_span(), place)) return true;
-    refusal_ = Collapsibility::kMorph;
-    return false;
-  }
-
-  bool fit(Candidate& candidate) {
-    const StarVerdict verdict =
-        judge_.fit(star_, star_.centre(candidate.plan), static_cast<float>(tolerance_m_),
-                   smallest_altitude_cells_, candidate.heights,
-                   static_cast<std::size_t>(&candidate - candidates_.data()));
-    if (verdict != StarVerdict::kNotStarShaped) refusal_ = Collapsibility::kOverTolerance;
-    return verdict == StarVerdict::kFeasible;
-  }
-
-  Candidate* least_squared_error() {
-    Candidate* best = nullptr;
-    for (Candidate& candidate : candidates_) {
-      if (candidate.is_rejected) continue;
-      if (best && candidate.heights.squared_error >= best->heights.squared_error) continue;
-      best = &candidate;
-    }
-    return best;
-  }
-
-  /// The place that will be written for a candidate, if it holds what the wished place promised.
-  std::optional<Place> written(const Candidate& candidate) {
-    const double height_m = std::isnan(water_m_) ? wished_height_m(candidate)
-                                                 : placer_.over_datum_m(candidate.plan, water_m_);
-    const Place place = placer_.place(candidate.plan, height_m);
-    // as the mesh is, it is all that it has to be
-    if (here_ && place.lattice == here_->lattice) return place;
-    if (!is_sound(place)) return std::nullopt;
-    if (!holds(place) || !blends(place)) return std::nullopt;
-    return place;
-  }
-
-  double wished_height_m(const Candidate& candidate) const {
-    const auto& [lowest, highest, best, squared_error] = candidate.heights;
-    if (!std::isfinite(highest - lowest)) return candidate.height_m;
-    const float margin = kIntervalMargin * (highest - lowest);
-    return star_.origin().height_m + std::clamp(best, lowest + margin, highest - margin);
-  }
-
-  /// Is no triangle of the star turned over, too thin or too steep?
-  bool is_sound(const Place& place) const {
-    for (std::size_t k = 0; k < star_.sector_count(); ++k) {
-      if (!is_well_shaped(place, star_.corner(k), star_.corner(k + 1), options_.shape, placer_)) {
-        return false;
-      }
-    }
-    return true;
   }
 
   void commit(const Place& place, VertexId kept) {
@@ -469,8 +287,7 @@ class StrictCollapse {
     if (stencil_.core_size == 3) {
       samples_.clear(HalfedgeMesh::triangle(mesh_.opposite(stencil_.dying[0])));
     }
-    samples_.share_out(star_.triangles(), star_.samples(), star_.keen_count(),
-                       judge_.sectors(star_));
+    choice_.hand_over(samples_);
   }
 
   VertexId target_of(std::uint32_t v) {
@@ -524,18 +341,14 @@ class StrictCollapse {
   const StrictOptions& options_;
   // 0 where they are picked: a tile is then tried several times, and polish would be paid each time
   double sample_count_;
-  float smallest_altitude_cells_;
-  const SampleField& field_;
   CoveredSamples samples_;
   std::optional<MorphGuard> guard_;
+  PlaceChoice choice_;
   std::optional<LineChains> lines_;
   std::vector<VertexId> parent_;  // level 0 only: where a vertex went, to be followed
 
   std::vector<std::uint8_t> is_polished_;  // of each vertex; empty: all are
 
-  const Place* here_ = nullptr;  // of the vertex that may move; null in a collapse
-  double tolerance_m_ = 0;       // of this sweep
-  bool tries_more_places_ = false;
   std::uint32_t sweep_ = 0;
   std::vector<std::uint32_t> changed_;    // sweep after which a vertex is worth another try
   std::vector<std::uint32_t> disturbed_;  // sweep that last changed the surroundings of a vertex
@@ -543,13 +356,7 @@ class StrictCollapse {
 
   std::vector<std::uint32_t> block_;
   Stencil stencil_;
-  std::vector<Candidate> candidates_;
-  float water_m_ = 0;  // of what is being moved; NaN on land
   EdgeFlip flip_;
-  Star star_;
-  StarJudge judge_;
-  bool has_learnt_ = false;  // a sample, since a place was to be written
-  Collapsibility refusal_ = Collapsibility::kYes;
   StrictResult result_;
 };
 
