@@ -7,6 +7,7 @@
 #include <queue>
 #include <tuple>
 
+#include "hierarchy/collapse/feasible_heights.h"
 #include "hierarchy/collapse/morph_guard.h"
 #include "hierarchy/collapse/triangle_shape.h"
 
@@ -51,51 +52,6 @@ double worst_error_m(const FieldPoint& a, const FieldPoint& b, const FieldPoint&
       });
   return is_within ? worst : std::numeric_limits<double>::infinity();
 }
-
-/// The heights of a star's centre that keep it near the samples.
-class FeasibleHeights {
- public:
-  FeasibleHeights(const SampleField& field, double tolerance_m)
-      : field_(field), tolerance_m_(tolerance_m) {}
-
-  /// Takes in the samples under a triangle.
-  /// \return false if no height is left.
-  bool add(const FieldPoint& centre, const FieldPoint& a, const FieldPoint& b) {
-    const double ax = a.column - centre.column, ay = a.row - centre.row;
-    const double bx = b.column - centre.column, by = b.row - centre.row;
-    const double scale = 1 / (ax * by - ay * bx);
-    return for_each_sample(
-        centre, a, b, field_, field_.slack_cells, [&](std::size_t, const FieldSample& sample) {
-          const double x = sample.column - centre.column, y = sample.row - centre.row;
-          const double of_a = (x * by - y * bx) * scale, of_b = (ax * y - ay * x) * scale;
-          const double weight = 1 - of_a - of_b;
-          if (weight < kSmallestWeight) return true;
-          const double rest_m = sample.height_m - of_a * a.height_m - of_b * b.height_m;
-          lowest_m_ = std::max(lowest_m_, (rest_m - tolerance_m_) / weight);
-          highest_m_ = std::min(highest_m_, (rest_m + tolerance_m_) / weight);
-          weights_ += weight * weight;
-          weighted_m_ += weight * rest_m;
-          return lowest_m_ <= highest_m_;
-        });
-  }
-
-  /// Least squares, away from the ends of the interval as in the collapse of tiles.
-  std::optional<double> best_m() const {
-    if (weights_ == 0) return std::nullopt;
-    const double margin_m = kIntervalMargin * (highest_m_ - lowest_m_);
-    return std::clamp(weighted_m_ / weights_, lowest_m_ + margin_m, highest_m_ - margin_m);
-  }
-
- private:
-  static constexpr double kSmallestWeight = 1e-4;
-  static constexpr double kIntervalMargin = 0.2;
-
-  const SampleField& field_;
-  double tolerance_m_;
-  double lowest_m_ = -std::numeric_limits<double>::infinity();
-  double highest_m_ = std::numeric_limits<double>::infinity();
-  double weights_ = 0, weighted_m_ = 0;
-};
 
 /// The vertices around one of the chain's, counter-clockwise.
 struct Ring {
