@@ -21,13 +21,18 @@ TEST(PolishRounds, ThereAreMoreWhereTrianglesAreFewOrEffortIsMore) {
   const auto all = [](PolishRounds rounds) { return rounds.everywhere + rounds.near_locked; };
   EXPECT_EQ(all(polish_rounds(1, true, 3)), 0);
   EXPECT_LE(all(polish_rounds(1, true, 20)), all(polish_rounds(1, true, 200)));
-  EXPECT_LE(all(polish_rounds(1, true, 1000)), all(polish_rounds(1, true, 200)));
+  EXPECT_LE(all(polish_rounds(1, true, 500)), all(polish_rounds(1, true, 200)));
   for (const bool is_above : {false, true}) {
     for (int effort = 0; effort < 3; ++effort) {
       EXPECT_LE(all(polish_rounds(effort, is_above, 200)),
                 all(polish_rounds(effort + 1, is_above, 200)));
     }
   }
+}
+
+TEST(PolishRounds, ThereAreNoneByDefaultWhereTheyCostAllSamplesForAHandfulOfTriangles) {
+  EXPECT_EQ(polish_rounds(1, true, 5000), PolishRounds());
+  EXPECT_NE(polish_rounds(2, true, 5000), PolishRounds());
 }
 
 }  // namespace
