@@ -32,18 +32,33 @@ class PlumbTriangle {
       : corner_(a), side_b_(b - a), side_c_(c - a) {}
 
   /// Height along the plumb line at which the triangle is met; none if it is not.
-  std::optional<double> height_m(const Plumb& plumb) const {
+  /// \param beside  where lines that pass beside the triangle count, as a share of it.
+  std::optional<double> height_m(const Plumb& plumb, double beside = kOnEdge) const {
     const Eigen::Vector3d p = plumb.up.cross(side_c_);
     const Eigen::Vector3d s = plumb.base - corner_;
     const Eigen::Vector3d q = s.cross(side_b_);
     const double scale = 1 / side_b_.dot(p);
     const double u = s.dot(p) * scale, v = plumb.up.dot(q) * scale;
-    if (u < -kOnEdge || v < -kOnEdge || u + v > 1 + kOnEdge) return std::nullopt;
+    if (u < -beside || v < -beside || u + v > 1 + beside) return std::nullopt;
     return side_c_.dot(q) * scale;
   }
 
   const Eigen::Vector3d& corner() const { return corner_; }
   Eigen::Vector3d normal() const { return side_b_.cross(side_c_); }
+
+  /// How much it rises over a metre across the plumb line.
+  double rise(const Eigen::Vector3d& up) const {
+    const Eigen::Vector3d n = normal();
+    const double upright = n.dot(up);
+    return (n - upright * up).norm() / std::abs(upright);
+  }
+  /// Smallest altitude seen along the plumb line.
+  double altitude_m(const Eigen::Vector3d& up) const {
+    const double longest2 =
+        std::max({side_b_.cross(up).squaredNorm(), side_c_.cross(up).squaredNorm(),
+                  (side_c_ - side_b_).cross(up).squaredNorm()});
+    return std::abs(normal().dot(up)) / std::sqrt(longest2);
+  }
 
  private:
   Eigen::Vector3d corner_, side_b_, side_c_;
@@ -226,6 +241,7 @@ class Measurement {
         patch_(patch),
         loose_(loose),
         shape_{patch.window.columns, patch.window.rows},
+        up_(patch.plumb(shape_.columns / 2, shape_.rows / 2).up),
         worst_m_(static_cast<std::size_t>(shape_.columns * shape_.rows), kUnmeasured),
         worst_at_loose_m_(loose.samples().size(), kUnmeasured) {}
 
@@ -235,24 +251,26 @@ class Measurement {
     const double slack_cells =
         kPlanRounding_cells + std::max({bend_cells(a, b), bend_cells(b, c), bend_cells(c, a)});
     const FieldPoint p = patch_.local(a.plan), q = patch_.local(b.plan), r = patch_.local(c.plan);
+    const Reach reach = reach_of(triangle);
     const InnerColumns inner(p, q, r, slack_cells);
     for_each_span(p, q, r, shape_, slack_cells,
                   [&](std::int64_t row, std::int64_t first, std::int64_t last) {
                     const auto [begin, end] = inner.of_row(row, first, last);
-                    if (end - begin < kFewColumns || bend_.meets_pole()) {
-                      add_one_by_one(triangle, row, first, last);
+                    if (end - begin < kFewColumns || bend_.meets_pole() || reach.is_steep) {
+                      add_one_by_one(triangle, reach, row, first, last);
                     } else {
-                      add_one_by_one(triangle, row, first, begin - 1);
+                      add_one_by_one(triangle, reach, row, first, begin - 1);
                       add_inner(triangle, row, begin, end);
-                      add_one_by_one(triangle, row, end + 1, last);
+                      add_one_by_one(triangle, reach, row, end + 1, last);
                     }
                     return true;
                   });
     loose_.for_each_near(a.plan, b.plan, c.plan, slack_cells, [&](std::size_t k) {
-      const auto height_m = triangle.height_m(loose_.plumb(k));
+      const auto height_m = triangle.height_m(loose_.plumb(k), reach.beside);
       if (!height_m) return;
       const double error_m = std::abs(*height_m - loose_.samples()[k].height_m);
       worst_at_loose_m_[k] = std::max(worst_at_loose_m_[k], error_m);
+      note_steep(reach, error_m);
     });
   }
 
@@ -286,9 +304,10 @@ class Measurement {
         ++result.samples;
       }
     }
-    // heights are taken at the frame's places, which are off by a little: on slopes of up to 3 the
-    // heights then are by four times that at most
-    result.max_m += 4 * frame_.accuracy_m();
+    // heights are taken at the frame's places, which are off by a little, and a slope adds as often
+    // as much as it rises
+    result.max_m += (1 + kGentle) * frame_.accuracy_m();
+    result.max_m = std::max(result.max_m, steep_max_m_);
     return result;
   }
 
@@ -296,13 +315,33 @@ class Measurement {
   static constexpr double kUnmeasured = -1;
   // in a row, that it does not pay to find a polynomial for
   static constexpr std::int64_t kFewColumns = 3;
+  // what triangles rise over a metre that are measured as if all were so
+  static constexpr double kGentle = 3;
+
+  /// What the frame may be off where a triangle is met.
+  struct Reach {
+    bool is_steep = false;
+    double off_m = 0;         ///< in height
+    double beside = kOnEdge;  ///< in plan, as a share of the triangle
+  };
+
+  Reach reach_of(const PlumbTriangle& triangle) const {
+    const double rise = triangle.rise(up_);
+    if (rise <= kGentle) return {};
+    return {true, (1 + rise) * frame_.accuracy_m(),
+            std::max(kOnEdge, frame_.accuracy_m() / triangle.altitude_m(up_))};
+  }
+
+  void note_steep(const Reach& reach, double error_m) {
+    if (reach.is_steep) steep_max_m_ = std::max(steep_max_m_, error_m + reach.off_m);
+  }
 
   /// Those that the triangle may be beside of, too.
-  void add_one_by_one(const PlumbTriangle& triangle, std::int64_t row, std::int64_t first,
-                      std::int64_t last) {
+  void add_one_by_one(const PlumbTriangle& triangle, const Reach& reach, std::int64_t row,
+                      std::int64_t first, std::int64_t last) {
     for (std::int64_t column = first; column <= last; ++column) {
-      const auto height_m = triangle.height_m(patch_.plumb(column, row));
-      if (height_m) add(column, row, *height_m);
+      const auto height_m = triangle.height_m(patch_.plumb(column, row), reach.beside);
+      if (height_m) add(column, row, *height_m, reach);
     }
   }
 
@@ -357,10 +396,12 @@ class Measurement {
   }
 
   /// A sample on an edge is under two triangles: the worse one stays, and it counts once.
-  void add(std::int64_t column, std::int64_t row, double on_mesh_m) {
+  void add(std::int64_t column, std::int64_t row, double on_mesh_m, const Reach& reach) {
     const double height_m = patch_.height_m(column, row);
     if (std::isnan(height_m)) return;
-    worst_m(column, row) = std::max(worst_m(column, row), std::abs(on_mesh_m - height_m));
+    const double error_m = std::abs(on_mesh_m - height_m);
+    worst_m(column, row) = std::max(worst_m(column, row), error_m);
+    note_steep(reach, error_m);
   }
 
   void find_near(std::int64_t column, std::int64_t row, const WorldVertex& a, const WorldVertex& b,
@@ -389,8 +430,10 @@ class Measurement {
   const Patch& patch_;
   const LoosePatch& loose_;
   GridShape shape_;
+  Eigen::Vector3d up_;  // in the patch's middle
   std::vector<double> worst_m_;
   std::vector<double> worst_at_loose_m_;
+  double steep_max_m_ = 0;  // with what the frame may be off
 };
 
 Measurement measured(const MeasuredMesh& mesh, const Patch& patch, const LoosePatch& loose,

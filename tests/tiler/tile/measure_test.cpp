@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 
 #include "tests/tiler/test_dem.h"
@@ -57,6 +59,54 @@ TEST_F(TileWithASpike, ItIsMeasuredThoughItsTrianglesRoundedPlanLeavesItOut) {
                           .triangles = triangles,
                           .rim = {}};
   EXPECT_NEAR(measured(mesh, 0.01).max_m, 5, 0.01);
+}
+
+/// 65 x 65 samples of 0 m, 90 m apart on the sphere, whose frame is off by up to a sixth of a
+/// metre.
+class MeasuredOnTheEarth : public ::testing::Test {
+ protected:
+  static constexpr double kSide = 64;
+
+  double exact_error_m(const std::array<Eigen::Vector3d, 3>& corners, GridPosition sample) const {
+    const Plumb plumb = world_.plumbs({&sample, 1}).front();
+    const Eigen::Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    return std::abs(normal.dot(corners[0] - plumb.base) / normal.dot(plumb.up));
+  }
+
+  Eigen::Vector3d corner(GridPosition at, double height_m) const {
+    const Plumb plumb = world_.plumbs({&at, 1}).front();
+    return plumb.base + height_m * plumb.up;
+  }
+
+  const FunctionDem dem_{{65, 65}, [](std::int64_t, std::int64_t) { return 0; }};
+  const testing::GeographicPlace place_{{8, 47}, 1.0 / 1200};
+  const WorldFrame world_{place_, {65, 65}};
+  const Lattice lattice_{std::vector<Eigen::Vector3d>{{500, 500, 500}}};
+  const TileFrame frame_{world_, lattice_, {0, 0, 65, 65}, 0};
+};
+
+TEST_F(MeasuredOnTheEarth, StatedErrorIsNoLessThanTheExactOneHoweverSteep) {
+  ASSERT_GT(frame_.accuracy_m(), 0.05) << "or this shows nothing";
+  const TileSamples samples(dem_, {0, 0, 65, 65}, 0, 1);
+  for (const double rise : {-100.0, -10.0, -2.0, 0.1, 2.0, 10.0, 100.0}) {
+    for (const double column : {5.0, 20.0, 32.0, 50.0}) {
+      // one sample 60 m under a triangle that rises from the north-west to the south-east
+      const std::array<GridPosition, 3> at{
+          {{column - 0.4, 30.7}, {column + 0.4, 30.8}, {column + 0.1, 31.3}}};
+      MeasuredMesh mesh;
+      std::array<Eigen::Vector3d, 3> corners;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double along_m = 90 * (at[k].column - column + at[k].row - 31);
+        corners[k] = corner(at[k], 60 + rise * along_m);
+        mesh.vertices.push_back({{at[k].column, at[k].row, 0}, corners[k]});
+      }
+      const std::vector<hierarchy::Corners> triangles{{0, 2, 1}};
+      mesh.triangles = triangles;
+      const MeasuredError error = measure({&mesh, 1}, samples, frame_, 0.01, 1000).errors.front();
+      ASSERT_EQ(error.samples, 1);
+      EXPECT_GE(error.max_m, exact_error_m(corners, {column, 31})) << rise << " " << column;
+    }
+  }
 }
 
 /// One height between the samples.
