@@ -241,7 +241,6 @@ class Measurement {
         patch_(patch),
         loose_(loose),
         shape_{patch.window.columns, patch.window.rows},
-        up_(patch.plumb(shape_.columns / 2, shape_.rows / 2).up),
         worst_m_(static_cast<std::size_t>(shape_.columns * shape_.rows), kUnmeasured),
         worst_at_loose_m_(loose.samples().size(), kUnmeasured) {}
 
@@ -251,7 +250,7 @@ class Measurement {
     const double slack_cells =
         kPlanRounding_cells + std::max({bend_cells(a, b), bend_cells(b, c), bend_cells(c, a)});
     const FieldPoint p = patch_.local(a.plan), q = patch_.local(b.plan), r = patch_.local(c.plan);
-    const Reach reach = reach_of(triangle);
+    const Reach reach = reach_of(triangle, frame_.plumb(a.plan.column, a.plan.row).up);
     const InnerColumns inner(p, q, r, slack_cells);
     for_each_span(p, q, r, shape_, slack_cells,
                   [&](std::int64_t row, std::int64_t first, std::int64_t last) {
@@ -317,6 +316,8 @@ class Measurement {
   static constexpr std::int64_t kFewColumns = 3;
   // what triangles rise over a metre that are measured as if all were so
   static constexpr double kGentle = 3;
+  // slivers are some lattice steps thick, and the frame is off by less than a hundredth of one
+  static constexpr double kMostBeside = 0.1;
 
   /// What the frame may be off where a triangle is met.
   struct Reach {
@@ -325,11 +326,13 @@ class Measurement {
     double beside = kOnEdge;  ///< in plan, as a share of the triangle
   };
 
-  Reach reach_of(const PlumbTriangle& triangle) const {
-    const double rise = triangle.rise(up_);
+  Reach reach_of(const PlumbTriangle& triangle, const Eigen::Vector3d& up) const {
+    // at a pole triangles have no area, and no sample is under them
+    if (bend_.meets_pole()) return {};
+    const double rise = triangle.rise(up);
     if (rise <= kGentle) return {};
-    return {true, (1 + rise) * frame_.accuracy_m(),
-            std::max(kOnEdge, frame_.accuracy_m() / triangle.altitude_m(up_))};
+    const double beside = frame_.accuracy_m() / triangle.altitude_m(up);
+    return {true, (1 + rise) * frame_.accuracy_m(), std::clamp(beside, kOnEdge, kMostBeside)};
   }
 
   void note_steep(const Reach& reach, double error_m) {
@@ -430,7 +433,6 @@ class Measurement {
   const Patch& patch_;
   const LoosePatch& loose_;
   GridShape shape_;
-  Eigen::Vector3d up_;  // in the patch's middle
   std::vector<double> worst_m_;
   std::vector<double> worst_at_loose_m_;
   double steep_max_m_ = 0;  // with what the frame may be off

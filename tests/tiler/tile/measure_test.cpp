@@ -109,6 +109,37 @@ TEST_F(MeasuredOnTheEarth, StatedErrorIsNoLessThanTheExactOneHoweverSteep) {
   }
 }
 
+TEST(MeasuredPole, TrianglesWithoutAreaThereMakeNoError) {
+  constexpr int kSide = 65;
+  constexpr double kCell_deg = 22.5 / 64;
+  // at the pole itself plumb lines are one, and hit or miss by rounding
+  const FunctionDem dem({kSide, kSide},
+                        [](std::int64_t, std::int64_t row) { return row == 0 ? NAN : 0; });
+  const testing::GeographicPlace place({0, 90}, kCell_deg);
+  const WorldFrame world(place, dem.shape());
+  const Lattice lattice(std::vector<Eigen::Vector3d>{{76, 76, 16}});
+  const TileFrame frame(world, lattice, {0, 0, kSide, kSide}, 0);
+  MeasuredMesh mesh;
+  std::vector<hierarchy::Corners> triangles;
+  for (std::uint32_t row = 0; row < kSide; ++row) {
+    for (std::uint32_t column = 0; column < kSide; ++column) {
+      const GridPosition at{static_cast<double>(column), static_cast<double>(row)};
+      // all of the pole's row are one place
+      const GridPosition stands{row == 0 ? 0 : at.column, at.row};
+      mesh.vertices.push_back({{at.column, at.row, 0}, world.plumbs({&stands, 1}).front().base});
+      if (row == 0 || column == 0) continue;
+      const std::uint32_t here = row * kSide + column, above = here - kSide;
+      triangles.push_back({here, above, above - 1});
+      triangles.push_back({here, above - 1, here - 1});
+    }
+  }
+  mesh.triangles = triangles;
+  const TileSamples samples(dem, {0, 0, kSide, kSide}, 0, 1);
+  const MeasuredError error = measure({&mesh, 1}, samples, frame, 0.1, 1000).errors.front();
+  EXPECT_GT(error.samples, 4000);
+  EXPECT_LT(error.max_m, 1);
+}
+
 /// One height between the samples.
 class OneLoose final : public LooseSamples {
  public:
