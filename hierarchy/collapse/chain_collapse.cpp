@@ -23,18 +23,6 @@ FieldPoint field_point(const Place& place) {
   return {column_of(place.plan), row_of(place.plan), place.height_m};
 }
 
-double squared_length(GridPoint a, GridPoint b) {
-  const double x = static_cast<double>(b.x) - a.x, y = static_cast<double>(b.y) - a.y;
-  return x * x + y * y;
-}
-
-/// The square of the smallest altitude in grid units; 0 if the triangle is folded.
-double squared_altitude(GridPoint a, GridPoint b, GridPoint c) {
-  const auto area = static_cast<double>(orient2d(a, b, c));
-  if (area <= 0) return 0;
-  return area * area / std::max({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
-}
-
 /// Largest vertical distance to the samples under a triangle; infinite if over the limit.
 double worst_error_m(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
                      const SampleField& field, double limit_m) {

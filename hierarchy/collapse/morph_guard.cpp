@@ -62,10 +62,6 @@ bool is_short(const Passage& p, double longest_units) {
                   longest(between(p[3], p[4]), between(p[3], p[5]))) <= longest_units;
 }
 
-PlanPoint over_grid(const Place& place) {
-  return {static_cast<double>(place.plan.x), static_cast<double>(place.plan.y)};
-}
-
 FieldPoint field_point(const Place& place) {
   return {column_of(place.plan), row_of(place.plan), place.height_m};
 }
@@ -114,7 +110,7 @@ void MorphGuard::begin_at(std::span<const std::uint32_t> target) {
 /// \param places  of the corners before and after.
 bool MorphGuard::is_upright(const std::array<Place, 6>& places) const {
   Passage seen;
-  std::ranges::transform(places, seen.begin(), over_grid);
+  std::ranges::transform(places, seen.begin(), plan_point, &Place::plan);
   if (!keeps_orientation(seen, least_altitude_)) return false;
   if (is_short(seen, placer_.longest_straight_units())) return true;
   placer_.look_down(places, seen);

@@ -50,6 +50,10 @@ struct PlanPoint {
   bool operator==(const PlanPoint&) const = default;
 };
 
+inline PlanPoint plan_point(GridPoint p) {
+  return {static_cast<double>(p.x), static_cast<double>(p.y)};
+}
+
 /// Rounds places to the written lattice, and knows how the world has them.
 class Placer {
  public:
@@ -76,9 +80,7 @@ class Placer {
   /// Some places seen from above as the world has them, where edges are straight: along the plumb
   /// line in their middle, in grid units of a cell's shorter side.
   virtual void look_down(std::span<const Place> places, std::span<PlanPoint> seen) const {
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      seen[k] = {static_cast<double>(places[k].plan.x), static_cast<double>(places[k].plan.y)};
-    }
+    for (std::size_t k = 0; k < places.size(); ++k) seen[k] = plan_point(places[k].plan);
   }
 };
 

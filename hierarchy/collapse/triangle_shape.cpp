@@ -8,14 +8,17 @@
 namespace terrane::hierarchy {
 namespace {
 
-double squared_length(double x, double y) { return x * x + y * y; }
-
-double squared_length(GridPoint a, GridPoint b) {
-  return squared_length(static_cast<double>(b.x) - a.x, static_cast<double>(b.y) - a.y);
+double squared_length(const PlanPoint& a, const PlanPoint& b) {
+  const double x = b.x - a.x, y = b.y - a.y;
+  return x * x + y * y;
 }
 
-double squared_length(const PlanPoint& a, const PlanPoint& b) {
-  return squared_length(b.x - a.x, b.y - a.y);
+double squared_longest(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
+  return std::max({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
+}
+
+double squared_longest(GridPoint a, GridPoint b, GridPoint c) {
+  return squared_longest(plan_point(a), plan_point(b), plan_point(c));
 }
 
 /// altitude = twice the area / longest side; squared, as roots took a quarter of all the time.
@@ -29,18 +32,20 @@ bool is_upright_in_world(const std::array<Place, 3>& corners, double altitude,
   placer.look_down(corners, seen);
   const auto& [a, b, c] = seen;
   const double twice_area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-  const double longest2 =
-      std::max({squared_length(a, b), squared_length(b, c), squared_length(c, a)});
-  return is_thick(twice_area, longest2, altitude);
+  return is_thick(twice_area, squared_longest(a, b, c), altitude);
 }
 
 }  // namespace
 
+double squared_altitude(GridPoint a, GridPoint b, GridPoint c) {
+  const auto twice_area = static_cast<double>(orient2d(a, b, c));
+  return twice_area <= 0 ? 0 : twice_area * twice_area / squared_longest(a, b, c);
+}
+
 bool is_upright(const Place& a, const Place& b, const Place& c, double smallest_altitude_cells,
                 const Placer& placer) {
   const double altitude = smallest_altitude_cells * kUnitsPerCell;
-  const double longest2 = std::max({squared_length(a.plan, b.plan), squared_length(b.plan, c.plan),
-                                    squared_length(c.plan, a.plan)});
+  const double longest2 = squared_longest(a.plan, b.plan, c.plan);
   if (!is_thick(static_cast<double>(orient2d(a.plan, b.plan, c.plan)), longest2, altitude)) {
     return false;
   }

@@ -15,6 +15,9 @@ struct ShapeLimits {
   double steepest_m = std::numeric_limits<double>::infinity();
 };
 
+/// The square of a triangle's smallest altitude over the grid, in grid units; 0 if it is folded.
+double squared_altitude(GridPoint a, GridPoint b, GridPoint c);
+
 /// Is a triangle seen from above counter-clockwise and thick enough, over the grid and, where its
 /// sides are long, as the world has it?
 ///

@@ -316,8 +316,6 @@ class Measurement {
   static constexpr std::int64_t kFewColumns = 3;
   // what triangles rise over a metre that are measured as if all were so
   static constexpr double kGentle = 3;
-  // slivers are some lattice steps thick, and the frame is off by less than a hundredth of one
-  static constexpr double kMostBeside = 0.1;
 
   /// What the frame may be off where a triangle is met.
   struct Reach {
@@ -327,12 +325,12 @@ class Measurement {
   };
 
   Reach reach_of(const PlumbTriangle& triangle, const Eigen::Vector3d& up) const {
-    // at a pole triangles have no area, and no sample is under them
-    if (bend_.meets_pole()) return {};
     const double rise = triangle.rise(up);
-    if (rise <= kGentle) return {};
-    const double beside = frame_.accuracy_m() / triangle.altitude_m(up);
-    return {true, (1 + rise) * frame_.accuracy_m(), std::clamp(beside, kOnEdge, kMostBeside)};
+    if (!(rise > kGentle)) return {};
+    // written triangles are some lattice steps thick, but at a pole they have no area
+    const double off_m = frame_.accuracy_m(), altitude_m = triangle.altitude_m(up);
+    if (!(altitude_m > off_m)) return {};
+    return {true, (1 + rise) * off_m, std::max(kOnEdge, off_m / altitude_m)};
   }
 
   void note_steep(const Reach& reach, double error_m) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 
 #include "tests/hierarchy/test_meshes.h"
 
@@ -26,6 +27,8 @@ TEST(TriangleShape, FoldedTriangleIsNotUpright) {
 
 TEST(TriangleShape, AltitudeOnTheLongestSideIsTheSmallest) {
   // 3, 4, 5: the altitude on the longest side is 3 * 4 / 5
+  const double altitude2 = squared_altitude(cell(0, 0).plan, cell(0, 3).plan, cell(4, 0).plan);
+  EXPECT_DOUBLE_EQ(std::sqrt(altitude2) / kUnitsPerCell, 2.4);
   EXPECT_TRUE(is_upright(cell(0, 0), cell(0, 3), cell(4, 0), 2.39, ExactPlacer()));
   EXPECT_FALSE(is_upright(cell(0, 0), cell(0, 3), cell(4, 0), 2.41, ExactPlacer()));
 }
