@@ -146,7 +146,6 @@ class TileBuild {
         source_.lattice.smallest_altitude_steps() * step_m() / frame_.spacing_m();
     options.shape.steepest_m = source_.steepest * frame_.spacing_m();
 
-    constexpr int kMostTries = 12, kTriesWithPolish = 3;
     for (int tries = 1;; ++tries) {
       const StrictResult result =
           hierarchy::collapse_strictly(input, reference_.field(), frame_, finer, options);
@@ -167,12 +166,16 @@ class TileBuild {
   }
 
  private:
+  static constexpr int kMostTries = 12, kTriesWithPolish = 3;
+
   /// What becomes of the tolerance after a try. A reduced reference has then learnt, and often
   /// needs no more; and how far off its mesh was somewhere tells nothing about the next one.
   double tightening(int tries, double worst_m, double tolerance_m) const {
     constexpr int kTriesToLearn = 2;
     const bool is_whole = reference_.is_whole();
     if (!is_whole && tries <= kTriesToLearn) return 1;
+    // leaves the finer level as it is, which is within its own tolerance
+    if (!is_whole && tries + 1 == kMostTries) return 0;
     // gently at first: most are over by a thousandth
     const int doublings = std::min(tries - (is_whole ? 0 : kTriesToLearn), 5);
     const double gentle = 1 - 0.005 * (1 << doublings);

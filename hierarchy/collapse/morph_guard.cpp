@@ -17,6 +17,9 @@ constexpr double kShareOfAltitude = 0.25;
 // with more samples than that under a triangle, all threads look at those that move
 constexpr std::size_t kManySamples = 100;
 
+// with more than that, it pays to look at blocks of them first
+constexpr std::size_t kSamplesForSlabs = 100;
+
 using PlanVector = PlanPoint;
 using PlanTriangle = std::array<PlanPoint, 3>;
 using Passage = std::array<PlanPoint, 6>;  // corners before and after
@@ -82,9 +85,10 @@ MorphGuard::MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
       next_member_(finer_.size()),
       first_incident_(finer_.size() + 1, 0),
       incident_(triangles_.size() * 3),
-      has_large_triangles_(std::max(field.heights_m.size(), field.kept.size()) >
+      has_large_triangles_(std::max(field.grid_samples(), field.kept.size()) >
                            kManySamples * triangles_.size()),
       checked_(triangles_.size(), 0) {
+  if (field.grid_samples() > kSamplesForSlabs * triangles_.size()) slabs_ = HeightSlabs(field);
   for (std::uint32_t v = 0; v < finer_.size(); ++v) {
     target_[v] = VertexId{v};
     next_member_[v] = v;
@@ -130,7 +134,7 @@ bool MorphGuard::is_sound(const Corners& triangle, std::span<const VertexId> cor
     end[k] = field_point(places[3 + k]);
   }
   return is_upright(places) &&
-         MovingTriangle(begin, end, field_.slack_cells).stays_within(field_, tolerance_m_);
+         MovingTriangle(begin, end, field_.slack_cells).stays_within(field_, slabs_, tolerance_m_);
 }
 
 bool MorphGuard::allows(std::span<const VertexId> core, const Place& target) {

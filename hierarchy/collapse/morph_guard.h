@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "hierarchy/collapse/height_slabs.h"
 #include "hierarchy/collapse/sample_field.h"
 #include "hierarchy/collapse/terrain_mesh.h"
 #include "hierarchy/mesh/ids.h"
@@ -57,6 +58,7 @@ class MorphGuard {
   std::vector<std::uint32_t> next_member_;  // members of a coarse vertex: a ring through itself
   std::vector<std::uint32_t> first_incident_, incident_;
   bool has_large_triangles_;
+  HeightSlabs slabs_;
   std::vector<std::uint32_t> checked_, moved_;
   std::uint32_t stamp_ = 0;
 };

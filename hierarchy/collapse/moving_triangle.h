@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "hierarchy/collapse/height_slabs.h"
 #include "hierarchy/collapse/sample_field.h"
 
 namespace terrane::hierarchy {
@@ -27,7 +28,9 @@ class MovingTriangle {
   bool stays_within(const FieldSample& sample, double tolerance_m) const;
 
   /// The same for all samples of a field.
-  bool stays_within(const SampleField& field, double tolerance_m) const;
+  /// \param slabs  of the field, which then takes less time where many samples are under the
+  ///               triangle; or none.
+  bool stays_within(const SampleField& field, const HeightSlabs& slabs, double tolerance_m) const;
 
  private:
   class Sweep;

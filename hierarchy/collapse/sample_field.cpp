@@ -6,6 +6,7 @@ namespace terrane::hierarchy {
 
 void SampleField::keep(std::int64_t block_side_cells, const std::vector<FieldSample>& samples) {
   block_cells = block_side_cells;
+  heights_m = {};
   const auto block_of = [this](const FieldSample& sample) {
     const auto side = static_cast<std::size_t>(block_cells);
     // one that rounding left a little outside is of the block beside it

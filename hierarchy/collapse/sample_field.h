@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/height_grid.h"
+#include "hierarchy/collapse/coded_heights.h"
 #include "hierarchy/mesh/grid_point.h"
 
 namespace terrane::hierarchy {
@@ -25,12 +26,12 @@ struct FieldSample {
 /// with the Earth (so that a flat triangle is linear in it).
 ///
 /// Where a tile has very many, some are kept, sorted into square blocks: a mesh near those is about
-/// as near to all. Where the others are given as well, what is near to those kept is held against
-/// all; else whoever needs to be sure measures all of them afterwards.
+/// as near to all. Where all are behind them, what is near to those kept is held against all; else
+/// whoever needs to be sure measures all of them afterwards.
 struct SampleField {
   std::int64_t columns = 0;
   std::int64_t rows = 0;
-  std::vector<double> heights_m;  ///< row by row, NaN for no data; may be empty if reduced
+  std::vector<double> heights_m;  ///< row by row, NaN for no data; empty if reduced
   /// Samples this near to a triangle, in cells, count as under it: by rounding, one on the outline
   /// may lie just outside. At least a little, as a sample on an edge is better met twice than
   /// never.
@@ -41,16 +42,18 @@ struct SampleField {
   /// kept[first_kept[k + 1] - 1].
   std::vector<FieldSample> kept = {};
   std::vector<std::uint32_t> first_kept = {};
+  CodedHeights behind = {};  ///< all samples, or none
 
   bool is_reduced() const { return block_cells > 1; }
-  /// Is it reduced, and are all samples there as well?
-  bool is_backed() const { return is_reduced() && !heights_m.empty(); }
+  /// Is it reduced, and are all samples behind it?
+  bool is_backed() const { return !behind.empty(); }
   /// Blocks along the columns and rows; the last may be smaller.
   GridShape blocks() const {
     return {(columns + block_cells - 1) / block_cells, (rows + block_cells - 1) / block_cells};
   }
-  /// Reduces the field to some samples, none of them without a height; all others stay if they are
-  /// there.
+  /// Samples of the grid that the field has, with a height or not.
+  std::size_t grid_samples() const { return is_backed() ? behind.size() : heights_m.size(); }
+  /// Reduces the field to some samples, none of them without a height; what is behind them stays.
   void keep(std::int64_t block_side_cells, const std::vector<FieldSample>& samples);
 
   const double* row(std::int64_t r) const {
@@ -63,6 +66,8 @@ struct FieldPoint {
   double column = 0;
   double row = 0;
   double height_m = 0;
+
+  bool operator==(const FieldPoint&) const = default;
 };
 
 /// A straight line between two points.

@@ -13,7 +13,7 @@ FieldPoint field_point(const Place& place) {
 
 /// Part of a row of samples under a triangle.
 struct RowPart {
-  const double* heights_m;
+  CodedHeights::Row heights_m;
   std::int64_t count;
   double first_m, per_column_m;  // of the triangle
 
@@ -24,13 +24,14 @@ struct RowPart {
     std::int64_t k = 0;
     for (; k + kAtOnce <= count; k += kAtOnce) {
       for (std::int64_t i = 0; i < kAtOnce; ++i) {
-        const double off_m =
-            std::abs(first_m + static_cast<double>(k + i) * per_column_m - heights_m[k + i]);
+        const double off_m = std::abs(first_m + static_cast<double>(k + i) * per_column_m -
+                                      heights_m[static_cast<std::size_t>(k + i)]);
         most_m[i] = off_m > most_m[i] ? off_m : most_m[i];
       }
     }
     for (std::int64_t i = 0; k < count; ++k, ++i) {
-      const double off_m = std::abs(first_m + static_cast<double>(k) * per_column_m - heights_m[k]);
+      const double off_m = std::abs(first_m + static_cast<double>(k) * per_column_m -
+                                    heights_m[static_cast<std::size_t>(k)]);
       most_m[i] = off_m > most_m[i] ? off_m : most_m[i];
     }
     double result = 0;
@@ -41,7 +42,8 @@ struct RowPart {
   /// The first sample that is so far off.
   std::int64_t find(double off_m) const {
     for (std::int64_t k = 0; k < count; ++k) {
-      if (std::abs(first_m + static_cast<double>(k) * per_column_m - heights_m[k]) == off_m) {
+      if (std::abs(first_m + static_cast<double>(k) * per_column_m -
+                   heights_m[static_cast<std::size_t>(k)]) == off_m) {
         return k;
       }
     }
@@ -69,16 +71,17 @@ double worst_under_star(const Star& star, const Place& centre, const SampleField
           const double first_m = a.height_m +
                                  (static_cast<double>(first) - a.column) * per_column_m +
                                  (static_cast<double>(row) - a.row) * per_row_m;
-          const RowPart part{field.row(row) + first, last - first + 1, first_m, per_column_m};
+          const RowPart part{field.behind.row(first, row), last - first + 1, first_m, per_column_m};
           const double most_m = is_wide ? run_wide(part) : run_portable(part);
           if (most_m <= worst_m) return true;
           worst_m = most_m;
           const std::int64_t column = first + part.find(most_m);
-          worst = {static_cast<float>(column), static_cast<float>(row), field.row(row)[column]};
+          worst = {static_cast<float>(column), static_cast<float>(row),
+                   field.behind.row(column, row)[0]};
           return true;
         });
   }
-  return worst_m;
+  return worst_m + field.behind.rounding_m();
 }
 
 }  // namespace terrane::hierarchy

@@ -9,8 +9,8 @@ namespace terrane::hierarchy {
 /// them, whether the star holds them or not.
 ///
 /// \param[out] worst  the sample that it is farthest from; left as it is if there is none.
-/// \return metres; 0 where no sample is under the star.
-/// \pre the polygon sees the place, and \p field has heights row by row.
+/// \return metres, no less than it is; next to 0 where no sample is under the star.
+/// \pre the polygon sees the place, and \p field has all samples behind it.
 double worst_under_star(const Star& star, const Place& centre, const SampleField& field,
                         CoveredSample& worst);
 

@@ -20,12 +20,12 @@ class Reference {
  public:
   /// \param slack_cells     see SampleField.
   /// \param most_in_memory  samples that stay behind those kept if the tile has no more, and no
-  ///                        loose ones; eight bytes each.
+  ///                        loose ones; two bytes each.
   Reference(const TileSamples& samples, const TileFrame& frame, double slack_cells,
             std::int64_t most_in_memory = kMostInMemory);
 
-  /// 160 MB.
-  static constexpr std::int64_t kMostInMemory = 20'000'000;
+  /// 220 MB.
+  static constexpr std::int64_t kMostInMemory = 110'000'000;
 
   /// Heights over the curved datum of the frame.
   const hierarchy::SampleField& field() const { return field_; }

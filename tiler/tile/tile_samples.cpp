@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "hierarchy/collapse/within_task.h"
+#include "tiler/tile/extremes.h"
 
 namespace terrane::tiler {
 namespace {
@@ -26,8 +27,7 @@ std::int64_t fitting_block_cells(const Window& window, std::size_t input_triangl
   std::int64_t block = 1;
   for (double kept = samples; kept > most;) {
     block *= 2;
-    kept = static_cast<double>(TileSamples::kExtremesPerBlock) * samples /
-           static_cast<double>(block * block);
+    kept = static_cast<double>(kExtremesPerPart) * samples / static_cast<double>(block * block);
   }
   return block;
 }

@@ -31,8 +31,6 @@ class TileSamples {
   std::int64_t block_cells() const { return block_cells_; }
   /// Patches begin at multiples of this many blocks.
   static constexpr std::int64_t kBlocksPerTrend = 4;
-  /// Samples that are kept of each block at most.
-  static constexpr std::int64_t kExtremesPerBlock = 10;
 
   std::size_t patch_count() const { return patches_.size(); }
 

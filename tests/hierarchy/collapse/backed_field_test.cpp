@@ -1,6 +1,7 @@
 // What a reduced field leaves out, if it is there as well.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -35,8 +36,16 @@ SampleField reduced(const HeightGrid& grid, bool is_backed) {
       kept.push_back({static_cast<float>(column), static_cast<float>(row), grid.at(column, row)});
     }
   }
+  if (is_backed) {
+    const auto [lowest, highest] = std::ranges::minmax(field.heights_m);
+    field.behind = CodedHeights({field.columns, field.rows}, lowest, highest);
+    for (std::int64_t row = 0; row < field.rows; ++row) {
+      for (std::int64_t column = 0; column < field.columns; ++column) {
+        field.behind.set(column, row, field.row(row)[column]);
+      }
+    }
+  }
   field.keep(8, kept);
-  if (!is_backed) field.heights_m.clear();
   return field;
 }
 
@@ -89,9 +98,9 @@ TEST(BackedField, ATriangleOnItsWayIsHeldAgainstTheOthersToo) {
   std::array<FieldPoint, 3> to = from;
   to[2] = {24, 37, 0};  // over the spike
   const MovingTriangle moving(from, to, 1e-7);
-  EXPECT_TRUE(moving.stays_within(reduced(grid, true), 9.5));
-  EXPECT_FALSE(moving.stays_within(reduced(grid, true), 8));
-  EXPECT_TRUE(moving.stays_within(reduced(grid, false), 8));
+  EXPECT_TRUE(moving.stays_within(reduced(grid, true), {}, 9.5));
+  EXPECT_FALSE(moving.stays_within(reduced(grid, true), {}, 8));
+  EXPECT_TRUE(moving.stays_within(reduced(grid, false), {}, 8));
 }
 
 }  // namespace

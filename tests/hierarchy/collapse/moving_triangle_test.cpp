@@ -116,8 +116,8 @@ TEST(MovingTriangle, SeesEverySampleOnItsWay) {
   field.heights_m[1 * 8 + 4] = 100;
   const Triangle from{FieldPoint{0, 2, 0}, {2, 2, 0}, {1, 0, 0}};
   const Triangle to{FieldPoint{5, 2, 0}, {7, 2, 0}, {6, 0, 0}};
-  EXPECT_FALSE(MovingTriangle(from, to, 1e-7).stays_within(field, 1));
-  EXPECT_TRUE(MovingTriangle(from, to, 1e-7).stays_within(field, 101));
+  EXPECT_FALSE(MovingTriangle(from, to, 1e-7).stays_within(field, {}, 1));
+  EXPECT_TRUE(MovingTriangle(from, to, 1e-7).stays_within(field, {}, 101));
 }
 
 }  // namespace

@@ -1,0 +1,434 @@
+// A moving triangle and all samples of a field.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "hierarchy/collapse/bernstein.h"
+#include "hierarchy/collapse/height_slabs.h"
+#include "hierarchy/collapse/lanes.h"
+#include "hierarchy/collapse/moving_triangle.h"
+
+namespace terrane::hierarchy {
+namespace {
+
+// what single precision may be off by, as a share of the largest area times the largest height
+constexpr double kDoubt = 8e-6;
+
+// splits that eight samples take together before each is looked at alone
+constexpr int kSplitsAtOnce = 3;
+constexpr int kSplitsOfSlab = 2;
+
+// samples looked at may lie so far beside a triangle's corners, in cells
+constexpr double kMargin = 4;
+
+/// Takes rows of samples, and visits what lies in the blocks that are not clear.
+template <class IsClear, class Visit>
+class SpansBetweenSlabs {
+ public:
+  SpansBetweenSlabs(const IsClear& is_clear, const Visit& visit)
+      : is_clear_(is_clear), visit_(visit) {}
+
+  /// \param row  not above the last one.
+  /// \return whether all visits so far did.
+  bool add(std::int64_t row, std::int64_t first, std::int64_t last) {
+    if (count_ > 0 && row / kSide != spans_[0].row / kSide && !end()) return false;
+    spans_[count_++] = {row, first, last};
+    return true;
+  }
+
+  bool end() {
+    if (count_ == 0) return true;
+    const std::span<const Span> rows = std::span(spans_).first(std::exchange(count_, 0));
+    const std::int64_t block_row = rows[0].row / kSide;
+    const std::int64_t first = std::ranges::min(rows, {}, &Span::first).first / kSide;
+    const std::int64_t end = std::ranges::max(rows, {}, &Span::last).last / kSide + 1;
+    for (std::int64_t block = first; block < end; ++block) {
+      if (is_clear_(block, block_row)) continue;
+      const std::int64_t begin = block;
+      while (block + 1 < end && !is_clear_(block + 1, block_row)) ++block;
+      if (!visit_columns(rows, begin * kSide, block * kSide + kSide - 1)) return false;
+    }
+    return true;
+  }
+
+ private:
+  static constexpr std::int64_t kSide = HeightSlabs::kSide;
+  struct Span {
+    std::int64_t row, first, last;
+  };
+
+  bool visit_columns(std::span<const Span> rows, std::int64_t first, std::int64_t last) const {
+    for (const Span& span : rows) {
+      const std::int64_t from = std::max(first, span.first), to = std::min(last, span.last);
+      if (from <= to && !visit_(span.row, from, to)) return false;
+    }
+    return true;
+  }
+
+  const IsClear& is_clear_;
+  const Visit& visit_;
+  std::array<Span, kSide> spans_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+/// Goes through samples, eight at once in single precision. What that cannot clear of all doubt is
+/// judged one by one.
+class MovingTriangle::Sweep {
+ public:
+  /// \param margin_cells  how far beside the triangle there may be samples and corners of slabs.
+  Sweep(const MovingTriangle& triangle, double tolerance_m, double margin_cells)
+      : triangle_(triangle), tolerance_m_(tolerance_m), meeting_(triangle.meeting_corners()) {
+    double reach = 0, relief_m = tolerance_m;
+    const FieldPoint& origin = triangle.from_[0];
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const FieldPoint* p : {&triangle.from_[k], &triangle.to_[k]}) {
+        reach =
+            std::max({reach, std::abs(p->column - origin.column), std::abs(p->row - origin.row)});
+        relief_m = std::max(relief_m, std::abs(p->height_m - origin.height_m));
+      }
+      first_m_[k] = static_cast<float>(triangle.from_[k].height_m - origin.height_m);
+      last_m_[k] = static_cast<float>(triangle.to_[k].height_m - origin.height_m);
+      for (std::size_t i = 0; i < 3; ++i) {
+        constant_[k][i] = static_cast<float>(triangle.areas_[k][i].constant);
+        per_column_[k][i] = static_cast<float>(triangle.areas_[k][i].per_column);
+        per_row_[k][i] = static_cast<float>(triangle.areas_[k][i].per_row);
+      }
+    }
+    const double area_doubt = kDoubt * (reach + margin_cells) * (reach + margin_cells);
+    const std::array<double, 3>& whole = triangle.whole_;
+    const Cubic raised = elevated(whole);
+    for (std::size_t i = 0; i < 4; ++i) {
+      limits_.room[i] = static_cast<float>(tolerance_m * raised[i] - 8 * area_doubt * relief_m);
+    }
+    for (std::size_t i = 4 - vanishing(); i < 4; ++i) limits_.room[i] = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      limits_.outside[i] =
+          static_cast<float>(-triangle.slack_ * std::max(0.0, whole[i]) - area_doubt);
+    }
+    highest_m_ = static_cast<float>(2 * (relief_m + tolerance_m));
+    const double doubt_m = kDoubt * (relief_m + tolerance_m);
+    near_from_m_ =
+        static_cast<float>(triangle.highest_m_ - tolerance_m + doubt_m - origin.height_m);
+    near_to_m_ = static_cast<float>(triangle.lowest_m_ + tolerance_m - doubt_m - origin.height_m);
+  }
+
+  /// Part of a row of a field.
+  bool operator()(const SampleField& field, std::int64_t row, std::int64_t first,
+                  std::int64_t last) const {
+    const auto in_row = [&](const auto& heights_m) {
+      return in_eights(RowSamples{heights_m, static_cast<double>(first), static_cast<double>(row),
+                                  triangle_.from_[0], static_cast<std::size_t>(last - first + 1)});
+    };
+    return field.is_backed() ? in_row(field.behind.row(first, row))
+                             : in_row(field.row(row) + first);
+  }
+
+  /// Is the triangle within the tolerance of all that a slab can hold?
+  bool is_clear_of(const HeightSlab& slab, double column, double row) const {
+    if (slab.is_empty()) return true;
+    const SlabClearing clearing{*this, slab, column - triangle_.from_[0].column,
+                                row - triangle_.from_[0].row};
+    return has_wide_lanes() ? run_wide(clearing) : run_portable(clearing);
+  }
+
+  /// Any samples that have heights.
+  bool operator()(std::span<const FieldSample> samples) const {
+    return in_eights(KeptSamples{samples, triangle_.from_[0]});
+  }
+
+ private:
+  /// What samples are held against over some part of the time.
+  struct Limits {
+    std::array<float, 4> room;     // more off than that may be over the tolerance
+    std::array<float, 3> outside;  // an area less than that is surely outside
+  };
+
+  /// Eight samples over some part of the time; all in Bernstein form.
+  struct Passages {
+    std::array<std::array<Lanes, 3>, 3> inside;
+    std::array<Lanes, 4> off;
+
+    TERRANE_LANES_INLINE LaneMask are_outside(const Limits& limits) const {
+      LaneMask outside{};
+      for (const std::array<Lanes, 3>& area : inside) {
+        outside |= (area[0] < limits.outside[0]) & (area[1] < limits.outside[1]) &
+                   (area[2] < limits.outside[2]);
+      }
+      return outside;
+    }
+    /// Are all eight on the outer side of one edge?
+    TERRANE_LANES_INLINE bool are_beside(const Limits& limits) const {
+      for (const std::array<Lanes, 3>& area : inside) {
+        if (!any(~((area[0] < limits.outside[0]) & (area[1] < limits.outside[1]) &
+                   (area[2] < limits.outside[2])))) {
+          return true;
+        }
+      }
+      return false;
+    }
+    TERRANE_LANES_INLINE LaneMask have_room(const Limits& limits) const {
+      LaneMask room = ~LaneMask{};
+      for (std::size_t i = 0; i < 4; ++i) room &= abs(off[i]) <= limits.room[i];
+      return room;
+    }
+  };
+
+  /// Eight samples, counted from a corner.
+  struct Eight {
+    Lanes x, y, height_m;
+  };
+
+  /// Samples of a row.
+  template <class Heights>
+  struct RowSamples {
+    Heights all_heights_m;
+    double first_column, row;
+    const FieldPoint& origin;
+    std::size_t count;
+
+    FieldSample operator[](std::size_t k) const {
+      return {static_cast<float>(first_column + static_cast<double>(k)), static_cast<float>(row),
+              all_heights_m[k]};
+    }
+    TERRANE_LANES_INLINE Lanes heights_m(std::size_t first) const {
+      Lanes result{};
+      if (first + kLanes <= count) {
+        for (std::size_t k = 0; k < kLanes; ++k) {
+          result[k] = static_cast<float>(all_heights_m[first + k] - origin.height_m);
+        }
+        return result;
+      }
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const std::size_t at = std::min(first + k, count - 1);
+        result[k] = static_cast<float>(all_heights_m[at] - origin.height_m);
+      }
+      return result;
+    }
+    TERRANE_LANES_INLINE Eight eight(std::size_t first, const Lanes& height_m) const {
+      const auto x = static_cast<float>(first_column - origin.column + static_cast<double>(first));
+      const auto last = static_cast<float>(std::min(kLanes, count - first) - 1);
+      return {x + min(lane_numbers(), all_lanes(last)),
+              all_lanes(static_cast<float>(row - origin.row)), height_m};
+    }
+  };
+
+  /// Samples of a reduced field.
+  struct KeptSamples {
+    std::span<const FieldSample> samples;
+    const FieldPoint& origin;
+    std::size_t count = samples.size();
+
+    FieldSample operator[](std::size_t k) const { return samples[k]; }
+    TERRANE_LANES_INLINE Lanes heights_m(std::size_t first) const {
+      Lanes result{};
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const FieldSample& sample = samples[std::min(first + k, count - 1)];
+        result[k] = static_cast<float>(sample.height_m - origin.height_m);
+      }
+      return result;
+    }
+    TERRANE_LANES_INLINE Eight eight(std::size_t first, const Lanes& height_m) const {
+      Eight eight{{}, {}, height_m};
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const FieldSample& sample = samples[std::min(first + k, count - 1)];
+        eight.x[k] = static_cast<float>(sample.column - origin.column);
+        eight.y[k] = static_cast<float>(sample.row - origin.row);
+      }
+      return eight;
+    }
+  };
+
+  /// The first eight samples, from some on, that are not all cleared.
+  struct Doubt {
+    std::size_t first;
+    std::uint32_t samples;  // a bit for each of them that is not
+  };
+
+  template <class Samples>
+  struct Clearing {
+    const Sweep& sweep;
+    const Samples& samples;
+    std::size_t begin;
+
+    TERRANE_LANES_INLINE Doubt run() const {
+      for (std::size_t first = begin; first < samples.count; first += kLanes) {
+        const Lanes height_m = samples.heights_m(first);
+        // samples without data are as good as cleared
+        const LaneMask is_known = (height_m != height_m) | ((height_m >= sweep.near_from_m_) &
+                                                            (height_m <= sweep.near_to_m_));
+        if (!any(~is_known)) continue;
+        const Eight eight = samples.eight(first, height_m);
+        const LaneMask is_cleared =
+            is_known | ((abs(height_m) <= sweep.highest_m_) &
+                        are_sound<kSplitsAtOnce>(sweep.passages(eight), sweep.limits_, is_known));
+        if (any(~is_cleared)) return {first, bits_of(~is_cleared)};
+      }
+      return {samples.count, 0};
+    }
+  };
+
+  /// Heights off and areas are affine over the grid and in height: what all corners of a slab have
+  /// room for, or lie beside, all between them has or does.
+  struct SlabClearing {
+    const Sweep& sweep;
+    const HeightSlab& slab;
+    double x, y;  // of its first sample, from the triangle's first corner
+
+    TERRANE_LANES_INLINE bool run() const {
+      const Eight corners = eight();
+      if (!any(~((corners.height_m >= sweep.near_from_m_) &
+                 (corners.height_m <= sweep.near_to_m_)))) {
+        return true;
+      }
+      return !any(~(abs(corners.height_m) <= sweep.highest_m_)) &&
+             are_clear<kSplitsOfSlab>(sweep.passages(corners), sweep.limits_);
+    }
+
+    TERRANE_LANES_INLINE Eight eight() const {
+      constexpr double kFar = HeightSlabs::kSide - 1;
+      const double middle_m = slab.height_m - sweep.triangle_.from_[0].height_m;
+      Eight corners{};
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const double right = (k & 1) == 0 ? 0 : kFar, down = (k & 2) == 0 ? 0 : kFar;
+        const double above_m = (k & 4) == 0 ? slab.half_m : -slab.half_m;
+        corners.x[k] = static_cast<float>(x + right);
+        corners.y[k] = static_cast<float>(y + down);
+        corners.height_m[k] = static_cast<float>(middle_m + right * slab.per_column_m +
+                                                 down * slab.per_row_m + above_m);
+      }
+      return corners;
+    }
+  };
+
+  template <class Samples>
+  bool in_eights(const Samples& samples) const {
+    for (std::size_t begin = 0; begin < samples.count; begin += kLanes) {
+      const Clearing<Samples> clearing{*this, samples, begin};
+      const Doubt doubt = has_wide_lanes() ? run_wide(clearing) : run_portable(clearing);
+      begin = doubt.first;
+      for (std::size_t k = 0; k < kLanes && begin + k < samples.count; ++k) {
+        if ((doubt.samples >> k & 1) == 0) continue;
+        const FieldSample sample = samples[begin + k];
+        if (!std::isnan(sample.height_m) && !triangle_.stays_within(sample, tolerance_m_)) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  /// Where corners meet at t = 1, areas and heights off are (1 - t) times something, or (1 - t)^2
+  /// times if all do: so many of the last coefficients are 0, and there is nothing to doubt.
+  std::size_t vanishing() const {
+    return meeting_ == 0 ? 0 : static_cast<std::size_t>(meeting_) - 1;
+  }
+
+  TERRANE_LANES_INLINE Passages passages(const Eight& eight) const {
+    Passages all{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::array<Lanes, 3>& area = all.inside[k];
+      for (std::size_t i = 0; i < 3; ++i) {
+        area[i] = constant_[k][i] + eight.y * per_row_[k][i] + eight.x * per_column_[k][i];
+      }
+      const Lanes first = first_m_[k] - eight.height_m, last = last_m_[k] - eight.height_m;
+      constexpr float kThird = 1.0F / 3;
+      all.off[0] += area[0] * first;
+      all.off[1] += (area[0] * last + 2.0F * area[1] * first) * kThird;
+      all.off[2] += (2.0F * area[1] * last + area[2] * first) * kThird;
+      all.off[3] += area[2] * last;
+    }
+    for (std::size_t i = 4 - vanishing(); i < 4; ++i) all.off[i] = Lanes{};
+    return all;
+  }
+
+  /// \param known  samples that need no look.
+  template <int kSplits>
+  TERRANE_LANES_INLINE static LaneMask are_sound(const Passages& passages, const Limits& limits,
+                                                 const LaneMask& known) {
+    LaneMask sound = known | passages.have_room(limits) | passages.are_outside(limits);
+    if constexpr (kSplits > 0) {
+      if (!any(~sound)) return sound;
+      const auto [first, second] = halves(passages);
+      const auto [before, after] = halves(limits);
+      const LaneMask at_first = are_sound<kSplits - 1>(first, before, sound);
+      // what fails in the first half is in doubt, whatever comes
+      if (any(at_first & ~sound)) {
+        sound = at_first & are_sound<kSplits - 1>(second, after, sound | ~at_first);
+      }
+    }
+    return sound;
+  }
+
+  template <int kSplits>
+  TERRANE_LANES_INLINE static bool are_clear(const Passages& passages, const Limits& limits) {
+    if (!any(~passages.have_room(limits)) || passages.are_beside(limits)) return true;
+    if constexpr (kSplits > 0) {
+      const auto [first, second] = halves(passages);
+      const auto [before, after] = halves(limits);
+      return are_clear<kSplits - 1>(first, before) && are_clear<kSplits - 1>(second, after);
+    }
+    return false;
+  }
+
+  TERRANE_LANES_INLINE static std::pair<Passages, Passages> halves(Passages whole) {
+    Passages first;
+    for (std::size_t k = 0; k < 3; ++k) first.inside[k] = split(whole.inside[k]);
+    first.off = split(whole.off);
+    return {first, whole};
+  }
+  TERRANE_LANES_INLINE static std::pair<Limits, Limits> halves(Limits whole) {
+    Limits first;
+    first.room = split(whole.room);
+    first.outside = split(whole.outside);
+    return {first, whole};
+  }
+
+  const MovingTriangle& triangle_;
+  double tolerance_m_;
+  int meeting_;
+  float constant_[3][3], per_column_[3][3], per_row_[3][3], first_m_[3], last_m_[3];
+  Limits limits_;
+  float highest_m_;
+  float near_from_m_, near_to_m_;  // heights that are near those of all corners
+};
+
+bool MovingTriangle::stays_within(const SampleField& field, const HeightSlabs& slabs,
+                                  double tolerance_m) const {
+  // a point under the triangle is at any time between two that are under it at the ends
+  std::array<FieldPoint, 6> corners{from_[0], from_[1], from_[2]};
+  std::size_t count = 3;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (from_[k] != to_[k]) corners[count++] = to_[k];
+  }
+  if (count == 3) return true;
+  const std::span<const FieldPoint> hull = std::span(corners).first(count);
+  const double beside_cells = slabs.empty() ? 0 : static_cast<double>(HeightSlabs::kSide);
+  if (field.is_reduced()) {
+    // the few first: most that is refused is so by them
+    const Sweep over_kept(*this, tolerance_m, kMargin);
+    const bool is_near_kept = for_each_kept_run_of_hull(hull, field, field.slack_cells, over_kept);
+    if (!is_near_kept || !field.is_backed()) return is_near_kept;
+  }
+  const double rounding_m = field.is_backed() ? field.behind.rounding_m() : 0;
+  const Sweep sweep(*this, tolerance_m - rounding_m, kMargin + beside_cells);
+  const auto over_span = [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+    return sweep(field, row, first, last);
+  };
+  const GridShape shape{field.columns, field.rows};
+  if (slabs.empty()) return for_each_span_of_hull(hull, shape, field.slack_cells, over_span);
+  const auto is_clear = [&](std::int64_t column, std::int64_t row) {
+    constexpr std::int64_t kSide = HeightSlabs::kSide;
+    return sweep.is_clear_of(slabs.at(column, row), static_cast<double>(column * kSide),
+                             static_cast<double>(row * kSide));
+  };
+  SpansBetweenSlabs spans(is_clear, over_span);
+  return for_each_span_of_hull(hull, shape, field.slack_cells,
+                               [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+                                 return spans.add(row, first, last);
+                               }) &&
+         spans.end();
+}
+
+}  // namespace terrane::hierarchy
