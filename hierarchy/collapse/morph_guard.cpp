@@ -19,6 +19,7 @@ constexpr std::size_t kManySamples = 100;
 
 // with more than that, it pays to look at blocks of them first
 constexpr std::size_t kSamplesForSlabs = 100;
+constexpr std::int64_t kSideOfSlabs = 8;
 
 using PlanVector = PlanPoint;
 using PlanTriangle = std::array<PlanPoint, 3>;
@@ -88,7 +89,9 @@ MorphGuard::MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
       has_large_triangles_(std::max(field.grid_samples(), field.kept.size()) >
                            kManySamples * triangles_.size()),
       checked_(triangles_.size(), 0) {
-  if (field.grid_samples() > kSamplesForSlabs * triangles_.size()) slabs_ = HeightSlabs(field);
+  if (field.grid_samples() > kSamplesForSlabs * triangles_.size()) {
+    slabs_ = field.slabs_of_grid(kSideOfSlabs);
+  }
   for (std::uint32_t v = 0; v < finer_.size(); ++v) {
     target_[v] = VertexId{v};
     next_member_[v] = v;

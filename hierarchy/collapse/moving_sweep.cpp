@@ -7,6 +7,7 @@
 #include "hierarchy/collapse/height_slabs.h"
 #include "hierarchy/collapse/lanes.h"
 #include "hierarchy/collapse/moving_triangle.h"
+#include "hierarchy/collapse/slab_rows.h"
 
 namespace terrane::hierarchy {
 namespace {
@@ -20,56 +21,6 @@ constexpr int kSplitsOfSlab = 2;
 
 // samples looked at may lie so far beside a triangle's corners, in cells
 constexpr double kMargin = 4;
-
-/// Takes rows of samples, and visits what lies in the blocks that are not clear.
-template <class IsClear, class Visit>
-class SpansBetweenSlabs {
- public:
-  SpansBetweenSlabs(const IsClear& is_clear, const Visit& visit)
-      : is_clear_(is_clear), visit_(visit) {}
-
-  /// \param row  not above the last one.
-  /// \return whether all visits so far did.
-  bool add(std::int64_t row, std::int64_t first, std::int64_t last) {
-    if (count_ > 0 && row / kSide != spans_[0].row / kSide && !end()) return false;
-    spans_[count_++] = {row, first, last};
-    return true;
-  }
-
-  bool end() {
-    if (count_ == 0) return true;
-    const std::span<const Span> rows = std::span(spans_).first(std::exchange(count_, 0));
-    const std::int64_t block_row = rows[0].row / kSide;
-    const std::int64_t first = std::ranges::min(rows, {}, &Span::first).first / kSide;
-    const std::int64_t end = std::ranges::max(rows, {}, &Span::last).last / kSide + 1;
-    for (std::int64_t block = first; block < end; ++block) {
-      if (is_clear_(block, block_row)) continue;
-      const std::int64_t begin = block;
-      while (block + 1 < end && !is_clear_(block + 1, block_row)) ++block;
-      if (!visit_columns(rows, begin * kSide, block * kSide + kSide - 1)) return false;
-    }
-    return true;
-  }
-
- private:
-  static constexpr std::int64_t kSide = HeightSlabs::kSide;
-  struct Span {
-    std::int64_t row, first, last;
-  };
-
-  bool visit_columns(std::span<const Span> rows, std::int64_t first, std::int64_t last) const {
-    for (const Span& span : rows) {
-      const std::int64_t from = std::max(first, span.first), to = std::min(last, span.last);
-      if (from <= to && !visit_(span.row, from, to)) return false;
-    }
-    return true;
-  }
-
-  const IsClear& is_clear_;
-  const Visit& visit_;
-  std::array<Span, kSide> spans_;
-  std::size_t count_ = 0;
-};
 
 }  // namespace
 
@@ -115,21 +66,31 @@ class MovingTriangle::Sweep {
   }
 
   /// Part of a row of a field.
-  bool operator()(const SampleField& field, std::int64_t row, std::int64_t first,
-                  std::int64_t last) const {
-    const auto in_row = [&](const auto& heights_m) {
-      return in_eights(RowSamples{heights_m, static_cast<double>(first), static_cast<double>(row),
-                                  triangle_.from_[0], static_cast<std::size_t>(last - first + 1)});
-    };
-    return field.is_backed() ? in_row(field.behind.row(first, row))
-                             : in_row(field.row(row) + first);
+  bool operator()(const SampleField& field, const RowSpan& span) const {
+    return field.is_reduced() ? in_row(span, field.behind.row(span.first, span.row))
+                              : in_row(span, field.row(span.row) + span.first);
   }
 
-  /// Is the triangle within the tolerance of all that a slab can hold?
-  bool is_clear_of(const HeightSlab& slab, double column, double row) const {
+  /// Part of a row in one block of slabs: are all heights that they let it have near?
+  bool operator()(const HeightSlabs& slabs, const RowSpan& span) const {
+    const std::int64_t side = slabs.side();
+    const HeightSlab& slab = slabs.at(span.first / side, span.row / side);
+    const double middle_m =
+        slab.middle_m(static_cast<double>(span.first % side), static_cast<double>(span.row % side));
+    return in_row(span, SlabRow{middle_m + slab.half_m, slab.per_column_m}) &&
+           in_row(span, SlabRow{middle_m - slab.half_m, slab.per_column_m});
+  }
+
+  /// Is the triangle within the tolerance of all that the slab of a block can hold?
+  /// \param column, row  any sample of the block.
+  bool is_clear_of(const HeightSlabs& slabs, std::int64_t column, std::int64_t row) const {
+    const std::int64_t side = slabs.side(), right = column / side, down = row / side;
+    const HeightSlab& slab = slabs.at(right, down);
     if (slab.is_empty()) return true;
-    const SlabClearing clearing{*this, slab, column - triangle_.from_[0].column,
-                                row - triangle_.from_[0].row};
+    const FieldPoint& origin = triangle_.from_[0];
+    const SlabClearing clearing{*this, slab, static_cast<double>(side - 1),
+                                static_cast<double>(right * side) - origin.column,
+                                static_cast<double>(down * side) - origin.row};
     return has_wide_lanes() ? run_wide(clearing) : run_portable(clearing);
   }
 
@@ -274,6 +235,7 @@ class MovingTriangle::Sweep {
   struct SlabClearing {
     const Sweep& sweep;
     const HeightSlab& slab;
+    double far;   // to its last sample along a row
     double x, y;  // of its first sample, from the triangle's first corner
 
     TERRANE_LANES_INLINE bool run() const {
@@ -287,20 +249,25 @@ class MovingTriangle::Sweep {
     }
 
     TERRANE_LANES_INLINE Eight eight() const {
-      constexpr double kFar = HeightSlabs::kSide - 1;
-      const double middle_m = slab.height_m - sweep.triangle_.from_[0].height_m;
+      const double origin_m = sweep.triangle_.from_[0].height_m;
       Eight corners{};
       for (std::size_t k = 0; k < kLanes; ++k) {
-        const double right = (k & 1) == 0 ? 0 : kFar, down = (k & 2) == 0 ? 0 : kFar;
+        const double right = (k & 1) == 0 ? 0 : far, down = (k & 2) == 0 ? 0 : far;
         const double above_m = (k & 4) == 0 ? slab.half_m : -slab.half_m;
         corners.x[k] = static_cast<float>(x + right);
         corners.y[k] = static_cast<float>(y + down);
-        corners.height_m[k] = static_cast<float>(middle_m + right * slab.per_column_m +
-                                                 down * slab.per_row_m + above_m);
+        corners.height_m[k] = static_cast<float>(slab.middle_m(right, down) + above_m - origin_m);
       }
       return corners;
     }
   };
+
+  template <class Heights>
+  bool in_row(const RowSpan& span, const Heights& heights_m) const {
+    return in_eights(RowSamples{heights_m, static_cast<double>(span.first),
+                                static_cast<double>(span.row), triangle_.from_[0],
+                                static_cast<std::size_t>(span.last - span.first + 1)});
+  }
 
   template <class Samples>
   bool in_eights(const Samples& samples) const {
@@ -394,6 +361,37 @@ class MovingTriangle::Sweep {
   float near_from_m_, near_to_m_;  // heights that are near those of all corners
 };
 
+/// All samples under some hull, or where there are many, those that no slab clears.
+bool MovingTriangle::stays_within_all(std::span<const FieldPoint> hull, const SampleField& field,
+                                      const HeightSlabs& slabs, double tolerance_m) const {
+  const auto for_each_row = [&](const auto& visit) {
+    return for_each_span_of_hull(hull, {field.columns, field.rows}, field.slack_cells, visit);
+  };
+  const double beside_cells = slabs.empty() ? 0 : static_cast<double>(slabs.side());
+  const Sweep sweep(*this, tolerance_m, kMargin + beside_cells);
+  if (slabs.empty()) {
+    return for_each_row([&](std::int64_t row, std::int64_t first, std::int64_t last) {
+      return sweep(field, {row, first, last});
+    });
+  }
+  const bool has_samples = field.slabs.empty();
+  const auto over_blocks = [&](std::span<const RowSpan> spans) {
+    return for_each_block_of(spans, slabs.side(), [&](std::int64_t first, std::int64_t last) {
+      if (sweep.is_clear_of(slabs, first, spans[0].row)) return true;
+      return std::ranges::all_of(spans, [&](const RowSpan& whole) {
+        const RowSpan span{whole.row, std::max(whole.first, first), std::min(whole.last, last)};
+        if (span.first > span.last) return true;
+        return has_samples ? sweep(field, span) : sweep(slabs, span);
+      });
+    });
+  };
+  SlabRows rows(slabs.side(), over_blocks);
+  return for_each_row([&](std::int64_t row, std::int64_t first, std::int64_t last) {
+           return rows.add(row, first, last);
+         }) &&
+         rows.end();
+}
+
 bool MovingTriangle::stays_within(const SampleField& field, const HeightSlabs& slabs,
                                   double tolerance_m) const {
   // a point under the triangle is at any time between two that are under it at the ends
@@ -404,31 +402,13 @@ bool MovingTriangle::stays_within(const SampleField& field, const HeightSlabs& s
   }
   if (count == 3) return true;
   const std::span<const FieldPoint> hull = std::span(corners).first(count);
-  const double beside_cells = slabs.empty() ? 0 : static_cast<double>(HeightSlabs::kSide);
-  if (field.is_reduced()) {
-    // the few first: most that is refused is so by them
-    const Sweep over_kept(*this, tolerance_m, kMargin);
-    const bool is_near_kept = for_each_kept_run_of_hull(hull, field, field.slack_cells, over_kept);
-    if (!is_near_kept || !field.is_backed()) return is_near_kept;
-  }
-  const double rounding_m = field.is_backed() ? field.behind.rounding_m() : 0;
-  const Sweep sweep(*this, tolerance_m - rounding_m, kMargin + beside_cells);
-  const auto over_span = [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-    return sweep(field, row, first, last);
-  };
-  const GridShape shape{field.columns, field.rows};
-  if (slabs.empty()) return for_each_span_of_hull(hull, shape, field.slack_cells, over_span);
-  const auto is_clear = [&](std::int64_t column, std::int64_t row) {
-    constexpr std::int64_t kSide = HeightSlabs::kSide;
-    return sweep.is_clear_of(slabs.at(column, row), static_cast<double>(column * kSide),
-                             static_cast<double>(row * kSide));
-  };
-  SpansBetweenSlabs spans(is_clear, over_span);
-  return for_each_span_of_hull(hull, shape, field.slack_cells,
-                               [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-                                 return spans.add(row, first, last);
-                               }) &&
-         spans.end();
+  if (!field.is_reduced()) return stays_within_all(hull, field, slabs, tolerance_m);
+  // the few first: most that is refused is so by them
+  const Sweep over_kept(*this, tolerance_m, kMargin);
+  if (!for_each_kept_run_of_hull(hull, field, field.slack_cells, over_kept)) return false;
+  if (!field.is_backed()) return true;
+  if (!field.slabs.empty()) return stays_within_all(hull, field, field.slabs, tolerance_m);
+  return stays_within_all(hull, field, slabs, tolerance_m - field.behind.rounding_m());
 }
 
 }  // namespace terrane::hierarchy

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <limits>
+#include <span>
 
 #include "hierarchy/collapse/height_slabs.h"
 #include "hierarchy/collapse/sample_field.h"
@@ -34,6 +35,9 @@ class MovingTriangle {
 
  private:
   class Sweep;
+
+  bool stays_within_all(std::span<const FieldPoint> hull, const SampleField& field,
+                        const HeightSlabs& slabs, double tolerance_m) const;
 
   /// Twice the area between the sample and an edge, at times that do not matter here: affine.
   struct Affine {

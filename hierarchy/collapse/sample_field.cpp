@@ -22,4 +22,19 @@ void SampleField::keep(std::int64_t block_side_cells, const std::vector<FieldSam
   for (const FieldSample& sample : samples) kept[free[block_of(sample)]++] = sample;
 }
 
+HeightSlabs SampleField::slabs_of_grid(std::int64_t side) const {
+  HeightSlabs result({columns, rows}, side);
+  for (std::int64_t first_row = 0; first_row < rows; first_row += side) {
+    for (std::int64_t first = 0; first < columns; first += side) {
+      const auto height_m = [&](std::int64_t c, std::int64_t r) {
+        return is_reduced() ? behind.row(first + c, first_row + r)[0]
+                            : row(first_row + r)[first + c];
+      };
+      result.at(first / side, first_row / side) = slab_around(
+          std::min(side, columns - first), std::min(side, rows - first_row), side, height_m);
+    }
+  }
+  return result;
+}
+
 }  // namespace terrane::hierarchy

@@ -11,6 +11,7 @@
 
 #include "core/height_grid.h"
 #include "hierarchy/collapse/coded_heights.h"
+#include "hierarchy/collapse/height_slabs.h"
 #include "hierarchy/mesh/grid_point.h"
 
 namespace terrane::hierarchy {
@@ -43,16 +44,20 @@ struct SampleField {
   std::vector<FieldSample> kept = {};
   std::vector<std::uint32_t> first_kept = {};
   CodedHeights behind = {};  ///< all samples, or none
+  HeightSlabs slabs = {};    ///< of all samples, where they are too many to be behind; or none
 
   bool is_reduced() const { return block_cells > 1; }
-  /// Is it reduced, and are all samples behind it?
-  bool is_backed() const { return !behind.empty(); }
+  /// Is it reduced, and are all samples or their slabs behind it?
+  bool is_backed() const { return !behind.empty() || !slabs.empty(); }
   /// Blocks along the columns and rows; the last may be smaller.
   GridShape blocks() const {
     return {(columns + block_cells - 1) / block_cells, (rows + block_cells - 1) / block_cells};
   }
   /// Samples of the grid that the field has, with a height or not.
-  std::size_t grid_samples() const { return is_backed() ? behind.size() : heights_m.size(); }
+  std::size_t grid_samples() const { return is_reduced() ? behind.size() : heights_m.size(); }
+  /// Slabs of them.
+  /// \param side  samples along a block.
+  HeightSlabs slabs_of_grid(std::int64_t side) const;
   /// Reduces the field to some samples, none of them without a height; what is behind them stays.
   void keep(std::int64_t block_side_cells, const std::vector<FieldSample>& samples);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hierarchy/collapse/lanes.h"
+#include "hierarchy/collapse/slab_rows.h"
 
 namespace terrane::hierarchy {
 namespace {
@@ -51,37 +52,92 @@ struct RowPart {
   }
 };
 
+/// A triangle of a star.
+class Sector {
+ public:
+  Sector(const Place& a, const Place& b, const Place& c)
+      : a_(field_point(a)), b_(field_point(b)), c_(field_point(c)) {
+    const double bx = b_.column - a_.column, by = b_.row - a_.row;
+    const double cx = c_.column - a_.column, cy = c_.row - a_.row;
+    const double bz = b_.height_m - a_.height_m, cz = c_.height_m - a_.height_m;
+    const double area = bx * cy - by * cx;
+    per_column_m_ = (bz * cy - cz * by) / area;
+    per_row_m_ = (bx * cz - cx * bz) / area;
+  }
+
+  double per_column_m() const { return per_column_m_; }
+  double height_m(double column, double row) const {
+    return a_.height_m + (column - a_.column) * per_column_m_ + (row - a_.row) * per_row_m_;
+  }
+  template <class Visit>
+  void for_each_span_of(const SampleField& field, const Visit& visit) const {
+    for_each_span(a_, b_, c_, {field.columns, field.rows}, field.slack_cells,
+                  [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+                    visit(row, first, last);
+                    return true;
+                  });
+  }
+
+ private:
+  FieldPoint a_, b_, c_;
+  double per_column_m_, per_row_m_;
+};
+
+void raise_by_samples(const Sector& sector, const SampleField& field, StarError& error) {
+  sector.for_each_span_of(field, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+    const RowPart part{field.behind.row(first, row), last - first + 1,
+                       sector.height_m(static_cast<double>(first), static_cast<double>(row)),
+                       sector.per_column_m()};
+    const double most_m = has_wide_lanes() ? run_wide(part) : run_portable(part);
+    if (most_m <= error.most_m) return;
+    const std::int64_t column = first + part.find(most_m);
+    error = {
+        most_m,
+        {static_cast<float>(column), static_cast<float>(row), field.behind.row(column, row)[0]}};
+  });
+}
+
+/// The same where all that is known of the samples is the slab they are in: in a row, what is
+/// farthest is at an end.
+void raise_by_slab(const Sector& sector, const HeightSlabs& slabs, const RowSpan& span,
+                   StarError& error) {
+  const std::int64_t side = slabs.side();
+  const HeightSlab& slab = slabs.at(span.first / side, span.row / side);
+  if (slab.is_empty()) return;
+  for (const std::int64_t column : {span.first, span.last}) {
+    const auto c = static_cast<double>(column), r = static_cast<double>(span.row);
+    const double middle_m =
+        slab.middle_m(static_cast<double>(column % side), static_cast<double>(span.row % side));
+    const double above_m = sector.height_m(c, r) - middle_m;
+    const double most_m = std::abs(above_m) + slab.half_m;
+    if (most_m <= error.most_m) continue;
+    error = {most_m,
+             {static_cast<float>(column), static_cast<float>(span.row),
+              middle_m - std::copysign(double{slab.half_m}, above_m)}};
+  }
+}
+
+void raise_by_slabs(const Sector& sector, const SampleField& field, StarError& error) {
+  const std::int64_t side = field.slabs.side();
+  sector.for_each_span_of(field, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+    for (std::int64_t begin = first; begin <= last; begin = begin / side * side + side) {
+      const std::int64_t end = std::min(last, begin / side * side + side - 1);
+      raise_by_slab(sector, field.slabs, {row, begin, end}, error);
+    }
+  });
+}
+
 }  // namespace
 
-double worst_under_star(const Star& star, const Place& centre, const SampleField& field,
-                        CoveredSample& worst) {
-  const bool is_wide = has_wide_lanes();
-  const FieldPoint a = field_point(centre);
-  double worst_m = 0;
+StarError error_of_star(const Star& star, const Place& centre, const SampleField& field) {
+  StarError error;
+  const bool has_slabs = !field.slabs.empty();
   for (std::size_t s = 0; s < star.sector_count(); ++s) {
-    const FieldPoint b = field_point(star.corner(s)), c = field_point(star.corner(s + 1));
-    const double bx = b.column - a.column, by = b.row - a.row, bz = b.height_m - a.height_m;
-    const double cx = c.column - a.column, cy = c.row - a.row, cz = c.height_m - a.height_m;
-    const double area = bx * cy - by * cx;
-    const double per_column_m = (bz * cy - cz * by) / area;
-    const double per_row_m = (bx * cz - cx * bz) / area;
-    for_each_span(
-        a, b, c, {field.columns, field.rows}, field.slack_cells,
-        [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-          const double first_m = a.height_m +
-                                 (static_cast<double>(first) - a.column) * per_column_m +
-                                 (static_cast<double>(row) - a.row) * per_row_m;
-          const RowPart part{field.behind.row(first, row), last - first + 1, first_m, per_column_m};
-          const double most_m = is_wide ? run_wide(part) : run_portable(part);
-          if (most_m <= worst_m) return true;
-          worst_m = most_m;
-          const std::int64_t column = first + part.find(most_m);
-          worst = {static_cast<float>(column), static_cast<float>(row),
-                   field.behind.row(column, row)[0]};
-          return true;
-        });
+    const Sector sector(centre, star.corner(s), star.corner(s + 1));
+    has_slabs ? raise_by_slabs(sector, field, error) : raise_by_samples(sector, field, error);
   }
-  return worst_m + field.behind.rounding_m();
+  if (!has_slabs) error.most_m += field.behind.rounding_m();
+  return error;
 }
 
 }  // namespace terrane::hierarchy

@@ -5,13 +5,16 @@
 
 namespace terrane::hierarchy {
 
-/// How far the star around a place is, at most, from the samples of a field under it: from all of
-/// them, whether the star holds them or not.
+/// How far a star is, at most, from the samples under it.
+struct StarError {
+  double most_m = 0;         ///< no less than it is; next to 0 where no sample is under the star
+  CoveredSample worst = {};  ///< the sample that is, or as high or low as its slab lets it be
+};
+
+/// Of all samples behind a field, whether the star around a place holds them or not; or of their
+/// slabs.
 ///
-/// \param[out] worst  the sample that it is farthest from; left as it is if there is none.
-/// \return metres, no less than it is; next to 0 where no sample is under the star.
-/// \pre the polygon sees the place, and \p field has all samples behind it.
-double worst_under_star(const Star& star, const Place& centre, const SampleField& field,
-                        CoveredSample& worst);
+/// \pre the polygon sees the place, and \p field is backed.
+StarError error_of_star(const Star& star, const Place& centre, const SampleField& field);
 
 }  // namespace terrane::hierarchy

@@ -13,6 +13,9 @@ using hierarchy::FieldSample;
 
 constexpr std::int64_t kBlockOfLoose_cells = 2;
 
+// 272 MB
+constexpr std::int64_t kMostSlabs = 17'000'000;
+
 bool is_before(const FieldSample& a, const FieldSample& b) {
   return std::pair(a.row, a.column) < std::pair(b.row, b.column);
 }
@@ -89,6 +92,25 @@ hierarchy::CodedHeights coded_heights(const TileSamples& samples, const TileFram
   return coded;
 }
 
+/// Slabs of blocks so large that they fit the memory.
+hierarchy::HeightSlabs slabs_of(const TileSamples& samples, const TileFrame& frame) {
+  const Window& tile = samples.window();
+  std::int64_t side = 2;
+  while (tile.columns * tile.rows / (side * side) > kMostSlabs) side *= 2;
+  hierarchy::HeightSlabs slabs({tile.columns, tile.rows}, side);
+  samples.for_each_patch([&](std::size_t, const Window& patch, const HeightGrid& grid) {
+    const DatumHeights heights{grid, tile, frame};
+    for_each_part(patch, side, [&](const Window& block) {
+      slabs.at((block.column - tile.column) / side, (block.row - tile.row) / side) =
+          hierarchy::slab_around(block.columns, block.rows, side,
+                                 [&](std::int64_t column, std::int64_t row) {
+                                   return heights.at(block.column + column, block.row + row);
+                                 });
+    });
+  });
+  return slabs;
+}
+
 /// Grid samples and loose ones, all of them.
 std::vector<FieldSample> all_samples(const TileSamples& samples, const TileFrame& frame) {
   std::vector<FieldSample> result = collect_by_patch(samples, frame, add_all);
@@ -116,12 +138,14 @@ Reference::Reference(const TileSamples& samples, const TileFrame& frame, double 
                      std::int64_t most_in_memory) {
   const bool is_reduced = samples.block_cells() > 1;
   const std::int64_t all = samples.window().columns * samples.window().rows;
-  is_whole_ = !is_reduced || (!samples.has_loose() && all <= most_in_memory);
+  const bool is_backed = is_reduced && !samples.has_loose() && most_in_memory > 0;
+  is_whole_ = !is_reduced || is_backed;
   field_ = {samples.window().columns, samples.window().rows, {}};
   if (is_reduced || samples.has_loose()) {
     kept_ = is_reduced ? extremes_of_blocks(samples, frame) : all_samples(samples, frame);
     field_.keep(std::max(samples.block_cells(), kBlockOfLoose_cells), kept_);
-    if (is_reduced && is_whole_) field_.behind = coded_heights(samples, frame);
+    if (is_backed && all <= most_in_memory) field_.behind = coded_heights(samples, frame);
+    if (is_backed && all > most_in_memory) field_.slabs = slabs_of(samples, frame);
   } else {
     field_.heights_m = all_heights_m(samples, frame);
   }

@@ -27,8 +27,21 @@ HeightGrid hills() {
   });
 }
 
-/// Keeps one sample of each block, and the others behind.
-SampleField reduced(const HeightGrid& grid, bool is_backed) {
+enum class Behind { kNothing, kHeights, kSlabs };
+
+CodedHeights coded(const SampleField& field) {
+  const auto [lowest, highest] = std::ranges::minmax(field.heights_m);
+  CodedHeights heights({field.columns, field.rows}, lowest, highest);
+  for (std::int64_t row = 0; row < field.rows; ++row) {
+    for (std::int64_t column = 0; column < field.columns; ++column) {
+      heights.set(column, row, field.row(row)[column]);
+    }
+  }
+  return heights;
+}
+
+/// Keeps one sample of each block, and all behind it or not.
+SampleField reduced(const HeightGrid& grid, Behind behind) {
   SampleField field = field_of(grid);
   std::vector<FieldSample> kept;
   for (std::int64_t row = 0; row < grid.window.rows; row += 8) {
@@ -36,15 +49,8 @@ SampleField reduced(const HeightGrid& grid, bool is_backed) {
       kept.push_back({static_cast<float>(column), static_cast<float>(row), grid.at(column, row)});
     }
   }
-  if (is_backed) {
-    const auto [lowest, highest] = std::ranges::minmax(field.heights_m);
-    field.behind = CodedHeights({field.columns, field.rows}, lowest, highest);
-    for (std::int64_t row = 0; row < field.rows; ++row) {
-      for (std::int64_t column = 0; column < field.columns; ++column) {
-        field.behind.set(column, row, field.row(row)[column]);
-      }
-    }
-  }
+  if (behind == Behind::kHeights) field.behind = coded(field);
+  if (behind == Behind::kSlabs) field.slabs = field.slabs_of_grid(2);
   field.keep(8, kept);
   return field;
 }
@@ -75,20 +81,26 @@ double error_m(const TerrainMesh& mesh, const HeightGrid& grid) {
   return worst_m;
 }
 
-StrictResult collapse(const HeightGrid& grid, bool is_backed) {
+StrictResult collapse(const HeightGrid& grid, Behind behind) {
   const ExactPlacer placer;
-  const SampleField field = reduced(grid, is_backed);
+  const SampleField field = reduced(grid, behind);
   return collapse_strictly(terrain_of(grid), field, placer, {}, {.tolerance_m = 2});
 }
 
 TEST(BackedField, MeshIsWithinTheToleranceOfEverySample) {
-  const StrictResult result = collapse(hills(), true);
+  const StrictResult result = collapse(hills(), Behind::kHeights);
   EXPECT_LE(error_m(result.mesh, hills()), 2);
   EXPECT_LT(result.mesh.triangles.size(), 2U * 64 * 64 / 8);
 }
 
+TEST(BackedField, MeshIsWithinTheToleranceWhereOnlySlabsAreBehind) {
+  const StrictResult result = collapse(hills(), Behind::kSlabs);
+  EXPECT_LE(error_m(result.mesh, hills()), 2);
+  EXPECT_LT(result.mesh.triangles.size(), 2U * 64 * 64 / 4);
+}
+
 TEST(BackedField, WithoutTheOthersBehindItTheMeshIsNot) {
-  EXPECT_GT(error_m(collapse(hills(), false).mesh, hills()), 2);
+  EXPECT_GT(error_m(collapse(hills(), Behind::kNothing).mesh, hills()), 2);
 }
 
 TEST(BackedField, ATriangleOnItsWayIsHeldAgainstTheOthersToo) {
@@ -98,9 +110,9 @@ TEST(BackedField, ATriangleOnItsWayIsHeldAgainstTheOthersToo) {
   std::array<FieldPoint, 3> to = from;
   to[2] = {24, 37, 0};  // over the spike
   const MovingTriangle moving(from, to, 1e-7);
-  EXPECT_TRUE(moving.stays_within(reduced(grid, true), {}, 9.5));
-  EXPECT_FALSE(moving.stays_within(reduced(grid, true), {}, 8));
-  EXPECT_TRUE(moving.stays_within(reduced(grid, false), {}, 8));
+  EXPECT_TRUE(moving.stays_within(reduced(grid, Behind::kHeights), {}, 9.5));
+  EXPECT_FALSE(moving.stays_within(reduced(grid, Behind::kHeights), {}, 8));
+  EXPECT_TRUE(moving.stays_within(reduced(grid, Behind::kNothing), {}, 8));
 }
 
 }  // namespace

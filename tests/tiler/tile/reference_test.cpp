@@ -74,5 +74,19 @@ TEST_F(ReducedReference, WhatItLeavesOutStaysBehindItIfMemoryAllows) {
               backed.field().behind.rounding_m() + 1e-3);
 }
 
+TEST_F(ReducedReference, WhatItsMemoryDoesNotAllowIsThereAsSlabs) {
+  const Reference backed(samples_, frame_, 1e-7, 1000);
+  EXPECT_TRUE(backed.is_whole());
+  EXPECT_TRUE(backed.field().behind.empty());
+  const hierarchy::HeightSlabs& slabs = backed.field().slabs;
+  ASSERT_FALSE(slabs.empty());
+  const std::int64_t side = slabs.side();
+  for (const auto& [column, row] : {std::pair{1000, 777}, {2001, 1500}, {2199, 2199}, {0, 0}}) {
+    const hierarchy::HeightSlab& slab = slabs.at(column / side, row / side);
+    const double middle_m = slab.middle_m(double(column % side), double(row % side));
+    EXPECT_NEAR(middle_m, slope_with_spikes(column, row), slab.half_m + 1e-3);
+  }
+}
+
 }  // namespace
 }  // namespace terrane::tiler
