@@ -339,17 +339,17 @@ class MovingTriangle::Sweep {
     return false;
   }
 
-  TERRANE_LANES_INLINE static std::pair<Passages, Passages> halves(Passages whole) {
-    Passages first;
-    for (std::size_t k = 0; k < 3; ++k) first.inside[k] = split(whole.inside[k]);
-    first.off = split(whole.off);
-    return {first, whole};
+  TERRANE_LANES_INLINE static std::pair<Passages, Passages> halves(const Passages& whole) {
+    Passages first, second = whole;
+    for (std::size_t k = 0; k < 3; ++k) first.inside[k] = split(second.inside[k]);
+    first.off = split(second.off);
+    return {first, second};
   }
-  TERRANE_LANES_INLINE static std::pair<Limits, Limits> halves(Limits whole) {
-    Limits first;
-    first.room = split(whole.room);
-    first.outside = split(whole.outside);
-    return {first, whole};
+  TERRANE_LANES_INLINE static std::pair<Limits, Limits> halves(const Limits& whole) {
+    Limits first, second = whole;
+    first.room = split(second.room);
+    first.outside = split(second.outside);
+    return {first, second};
   }
 
   const MovingTriangle& triangle_;
