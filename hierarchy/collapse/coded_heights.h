@@ -35,7 +35,6 @@ class CodedHeights {
         codes_(static_cast<std::size_t>(shape.columns * shape.rows), kNone) {}
 
   bool empty() const { return codes_.empty(); }
-  std::size_t size() const { return codes_.size(); }
   /// Most that a height is off by.
   double rounding_m() const { return step_m_ / 2; }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "core/height_grid.h"
@@ -22,13 +23,6 @@ struct HeightSlab {
   double middle_m(double columns, double rows) const {
     return double{height_m} + columns * double{per_column_m} + rows * double{per_row_m};
   }
-};
-
-/// A row of one of a slab's planes.
-struct SlabRow {
-  double first_m, per_column_m;
-
-  double operator[](std::size_t k) const { return first_m + static_cast<double>(k) * per_column_m; }
 };
 
 /// A slab for each square block of a grid. What is flat and keeps clear of both planes at the
@@ -60,28 +54,37 @@ class HeightSlabs {
   std::vector<HeightSlab> slabs_;
 };
 
-/// Along the least-squares trend of a block; level where it has holes or is cut off.
-/// \param height_m  (column, row) of the block to its height; NaN where there is none.
+/// The slopes of a whole block's least-squares plane, in metres per column and row; NaN where it
+/// has holes. \param height_m  (column, row) of the block to its height; NaN where there is none.
+template <class HeightAt>
+std::pair<double, double> slopes_of(std::int64_t side, const HeightAt& height_m) {
+  const auto n = static_cast<double>(side);
+  const double middle = (n - 1) / 2, sum_of_squares = n * n * (n * n - 1) / 12;
+  double per_column = 0, per_row = 0;
+  for (std::int64_t r = 0; r < side; ++r) {
+    double sum = 0;
+    for (std::int64_t c = 0; c < side; ++c) {
+      const double height = height_m(c, r);
+      sum += height;
+      per_column += (static_cast<double>(c) - middle) * height;
+    }
+    per_row += (static_cast<double>(r) - middle) * sum;
+  }
+  return {per_column / sum_of_squares, per_row / sum_of_squares};
+}
+
+/// The slab of a block: along its trend; level where it has holes or is cut off.
+/// \param side      of a block that is not; at least 2.
+/// \param height_m  see slopes_of().
 template <class HeightAt>
 HeightSlab slab_around(std::int64_t columns, std::int64_t rows, std::int64_t side,
                        const HeightAt& height_m) {
   HeightSlab slab;
-  if (columns == side && rows == side && side > 1) {
-    const auto n = static_cast<double>(side);
-    const double middle = (n - 1) / 2, sum_of_squares = n * n * (n * n - 1) / 12;
-    double per_column = 0, per_row = 0;
-    for (std::int64_t r = 0; r < rows; ++r) {
-      double sum = 0;
-      for (std::int64_t c = 0; c < columns; ++c) {
-        const double height = height_m(c, r);
-        sum += height;
-        per_column += (static_cast<double>(c) - middle) * height;
-      }
-      per_row += (static_cast<double>(r) - middle) * sum;
-    }
+  if (columns == side && rows == side) {
+    const auto [per_column, per_row] = slopes_of(side, height_m);
     if (!std::isnan(per_row)) {
-      slab.per_column_m = static_cast<float>(per_column / sum_of_squares);
-      slab.per_row_m = static_cast<float>(per_row / sum_of_squares);
+      slab.per_column_m = static_cast<float>(per_column);
+      slab.per_row_m = static_cast<float>(per_row);
     }
   }
   double lowest_m = std::numeric_limits<double>::infinity(), highest_m = -lowest_m;

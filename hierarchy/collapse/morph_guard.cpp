@@ -14,11 +14,9 @@ namespace {
 // of the altitude that triangles have at either end: they may become thinner in between
 constexpr double kShareOfAltitude = 0.25;
 
-// with more samples than that under a triangle, all threads look at those that move
+// with more samples than that under a triangle, all threads look at those that move, and it pays to
+// look at blocks of samples first
 constexpr std::size_t kManySamples = 100;
-
-// with more than that, it pays to look at blocks of them first
-constexpr std::size_t kSamplesForSlabs = 100;
 constexpr std::int64_t kSideOfSlabs = 8;
 
 using PlanVector = PlanPoint;
@@ -86,12 +84,9 @@ MorphGuard::MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
       next_member_(finer_.size()),
       first_incident_(finer_.size() + 1, 0),
       incident_(triangles_.size() * 3),
-      has_large_triangles_(std::max(field.grid_samples(), field.kept.size()) >
-                           kManySamples * triangles_.size()),
+      has_large_triangles_(field.sample_count() > kManySamples * triangles_.size()),
       checked_(triangles_.size(), 0) {
-  if (field.grid_samples() > kSamplesForSlabs * triangles_.size()) {
-    slabs_ = field.slabs_of_grid(kSideOfSlabs);
-  }
+  if (has_large_triangles_ && field.has_grid()) slabs_ = field.slabs_of_grid(kSideOfSlabs);
   for (std::uint32_t v = 0; v < finer_.size(); ++v) {
     target_[v] = VertexId{v};
     next_member_[v] = v;

@@ -22,6 +22,13 @@ constexpr int kSplitsOfSlab = 2;
 // samples looked at may lie so far beside a triangle's corners, in cells
 constexpr double kMargin = 4;
 
+/// A row of one of a slab's planes.
+struct SlabRow {
+  double first_m, per_column_m;
+
+  double operator[](std::size_t k) const { return first_m + static_cast<double>(k) * per_column_m; }
+};
+
 }  // namespace
 
 /// Goes through samples, eight at once in single precision. What that cannot clear of all doubt is

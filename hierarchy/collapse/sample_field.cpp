@@ -1,6 +1,9 @@
 #include "hierarchy/collapse/sample_field.h"
 
+#include <algorithm>
 #include <numeric>
+
+#include "hierarchy/collapse/within_task.h"
 
 namespace terrane::hierarchy {
 
@@ -24,16 +27,17 @@ void SampleField::keep(std::int64_t block_side_cells, const std::vector<FieldSam
 
 HeightSlabs SampleField::slabs_of_grid(std::int64_t side) const {
   HeightSlabs result({columns, rows}, side);
-  for (std::int64_t first_row = 0; first_row < rows; first_row += side) {
-    for (std::int64_t first = 0; first < columns; first += side) {
+  for_each_within_task(static_cast<std::size_t>((rows + side - 1) / side), [&](std::size_t k) {
+    const auto block_row = static_cast<std::int64_t>(k);
+    const std::int64_t top = block_row * side;
+    for (std::int64_t left = 0; left < columns; left += side) {
       const auto height_m = [&](std::int64_t c, std::int64_t r) {
-        return is_reduced() ? behind.row(first + c, first_row + r)[0]
-                            : row(first_row + r)[first + c];
+        return is_reduced() ? behind.row(left + c, top + r)[0] : row(top + r)[left + c];
       };
-      result.at(first / side, first_row / side) = slab_around(
-          std::min(side, columns - first), std::min(side, rows - first_row), side, height_m);
+      result.at(left / side, block_row) =
+          slab_around(std::min(side, columns - left), std::min(side, rows - top), side, height_m);
     }
-  }
+  });
   return result;
 }
 

@@ -53,10 +53,14 @@ struct SampleField {
   GridShape blocks() const {
     return {(columns + block_cells - 1) / block_cells, (rows + block_cells - 1) / block_cells};
   }
-  /// Samples of the grid that the field has, with a height or not.
-  std::size_t grid_samples() const { return is_reduced() ? behind.size() : heights_m.size(); }
-  /// Slabs of them.
+  /// Are the samples of the grid there, all of them?
+  bool has_grid() const { return !heights_m.empty() || !behind.empty(); }
+  /// Samples that a mesh is held against in the end.
+  std::size_t sample_count() const {
+    return has_grid() || is_backed() ? static_cast<std::size_t>(columns * rows) : kept.size();
+  }
   /// \param side  samples along a block.
+  /// \pre has_grid()
   HeightSlabs slabs_of_grid(std::int64_t side) const;
   /// Reduces the field to some samples, none of them without a height; what is behind them stays.
   void keep(std::int64_t block_side_cells, const std::vector<FieldSample>& samples);

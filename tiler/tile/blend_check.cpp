@@ -3,6 +3,7 @@
 #include <array>
 
 #include "hierarchy/collapse/moving_triangle.h"
+#include "tiler/tile/datum_heights.h"
 #include "tiler/tile/reference.h"
 
 namespace terrane::tiler {
@@ -21,11 +22,10 @@ class PatchField {
         first_row_(static_cast<double>(patch.row - samples.window().row)),
         field_{patch.columns, patch.rows, {}} {
     field_.slack_cells = slack_cells;
+    const DatumHeights heights{grid, samples.window(), frame};
     for (std::int64_t row = 0; row < patch.rows; ++row) {
       for (std::int64_t column = 0; column < patch.columns; ++column) {
-        const double drop_m = frame.drop_m(first_column_ + static_cast<double>(column),
-                                           first_row_ + static_cast<double>(row));
-        field_.heights_m.push_back(grid.at(patch.column + column, patch.row + row) - drop_m);
+        field_.heights_m.push_back(heights.at(patch.column + column, patch.row + row));
       }
     }
   }
