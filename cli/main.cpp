@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "core/errors.h"
+#include "core/freed_memory.h"
 
 namespace {
 
@@ -38,6 +39,7 @@ void describe(CLI::App& app, terrane::cli::CommonOptions& common) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  terrane::keep_freed_memory();
   CLI::App app("Digital elevation models as sutured, bounded-error levels of detail", "terrane");
   terrane::cli::CommonOptions common;
   describe(app, common);

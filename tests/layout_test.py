@@ -34,7 +34,7 @@ NOT_OURS = {"node_modules", "build", "dist", "demo", ".git"}
 INCLUDE = re.compile(r'\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)')
 # Standard C++ headers have neither '.' nor '/'. These are C's and the system's.
 SYSTEM_HEADER = re.compile(
-    r"(sys|netinet|arpa)/\w+\.h|(stdlib|unistd|fcntl|signal|errno|termios|poll)\.h")
+    r"(sys|netinet|arpa)/\w+\.h|(malloc|stdlib|unistd|fcntl|signal|errno|termios|poll)\.h")
 VAGUE_WORDS = {"util", "utils", "helper", "helpers", "common", "misc", "manager"}
 MOST_LINES = 600
 

@@ -14,10 +14,12 @@ namespace {
 // of the altitude that triangles have at either end: they may become thinner in between
 constexpr double kShareOfAltitude = 0.25;
 
-// with more samples than that under a triangle, all threads look at those that move, and it pays to
-// look at blocks of samples first
+// with more samples than that under a triangle, all threads look at those that move
 constexpr std::size_t kManySamples = 100;
-constexpr std::int64_t kSideOfSlabs = 8;
+
+// with more than that, it pays to look at blocks of samples first
+constexpr std::size_t kManyForSlabs = 1000;
+constexpr std::int64_t kSideOfSlabs = 16;
 
 using PlanVector = PlanPoint;
 using PlanTriangle = std::array<PlanPoint, 3>;
@@ -86,7 +88,9 @@ MorphGuard::MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
       incident_(triangles_.size() * 3),
       has_large_triangles_(field.sample_count() > kManySamples * triangles_.size()),
       checked_(triangles_.size(), 0) {
-  if (has_large_triangles_ && field.has_grid()) slabs_ = field.slabs_of_grid(kSideOfSlabs);
+  if (field.has_grid() && field.sample_count() > kManyForSlabs * triangles_.size()) {
+    slabs_ = field.slabs_of_grid(kSideOfSlabs);
+  }
   for (std::uint32_t v = 0; v < finer_.size(); ++v) {
     target_[v] = VertexId{v};
     next_member_[v] = v;
@@ -137,22 +141,22 @@ bool MorphGuard::is_sound(const Corners& triangle, std::span<const VertexId> cor
 
 bool MorphGuard::allows(std::span<const VertexId> core, const Place& target) {
   list_moved(core);
-  const auto is_sound_at = [&](std::size_t i) {
-    return is_sound(triangles_[moved_[i]], core, target);
+  // what refused the last place is likely to refuse the next one, too
+  const auto first = std::ranges::find(moved_, refusing_);
+  if (first != moved_.end()) std::swap(*first, moved_.front());
+  std::atomic<std::uint32_t> refusing = kNone;
+  const auto look_at = [&](std::size_t i) {
+    if (refusing.load(std::memory_order_relaxed) != kNone) return;
+    if (!is_sound(triangles_[moved_[i]], core, target)) refusing = moved_[i];
   };
-  if (!has_large_triangles_) {
-    for (std::size_t i = 0; i < moved_.size(); ++i) {
-      if (!is_sound_at(i)) return false;
-    }
-    return true;
+  if (has_large_triangles_) {
+    for_each_within_task(moved_.size(), look_at);
+  } else {
+    for (std::size_t i = 0; i < moved_.size(); ++i) look_at(i);
   }
-  std::atomic<bool> is_sound_so_far = true;
-  for_each_within_task(moved_.size(), [&](std::size_t i) {
-    if (is_sound_so_far.load(std::memory_order_relaxed) && !is_sound_at(i)) {
-      is_sound_so_far = false;
-    }
-  });
-  return is_sound_so_far;
+  if (refusing == kNone) return true;
+  refusing_ = refusing;
+  return false;
 }
 
 /// The fine triangles at the fine vertices of a core, each once.

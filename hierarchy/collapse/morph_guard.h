@@ -60,6 +60,8 @@ class MorphGuard {
   bool has_large_triangles_;
   HeightSlabs slabs_;
   std::vector<std::uint32_t> checked_, moved_;
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  std::uint32_t refusing_ = kNone;  // fine triangle for which a place was last refused
   std::uint32_t stamp_ = 0;
 };
 

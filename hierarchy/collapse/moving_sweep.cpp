@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hierarchy/collapse/bernstein.h"
+#include "hierarchy/collapse/halfway_plane.h"
 #include "hierarchy/collapse/height_slabs.h"
 #include "hierarchy/collapse/lanes.h"
 #include "hierarchy/collapse/moving_triangle.h"
@@ -66,10 +67,15 @@ class MovingTriangle::Sweep {
           static_cast<float>(-triangle.slack_ * std::max(0.0, whole[i]) - area_doubt);
     }
     highest_m_ = static_cast<float>(2 * (relief_m + tolerance_m));
-    const double doubt_m = kDoubt * (relief_m + tolerance_m);
-    near_from_m_ =
-        static_cast<float>(triangle.highest_m_ - tolerance_m + doubt_m - origin.height_m);
-    near_to_m_ = static_cast<float>(triangle.lowest_m_ + tolerance_m - doubt_m - origin.height_m);
+    const HalfwayPlane plane(triangle.from_, triangle.to_);
+    halfway_m_ = static_cast<float>(plane.height_m);
+    halfway_per_column_m_ = static_cast<float>(plane.per_column_m);
+    halfway_per_row_m_ = static_cast<float>(plane.per_row_m);
+    const double rise_m = std::abs(plane.per_column_m) + std::abs(plane.per_row_m);
+    // samples may lie beside the triangle, by at most the slack on two sides
+    halfway_room_m_ =
+        static_cast<float>(tolerance_m - plane.farthest_m * (1 + 4 * triangle.slack_) -
+                           kDoubt * (relief_m + tolerance_m + rise_m * (reach + margin_cells)));
   }
 
   /// Part of a row of a field.
@@ -222,12 +228,11 @@ class MovingTriangle::Sweep {
 
     TERRANE_LANES_INLINE Doubt run() const {
       for (std::size_t first = begin; first < samples.count; first += kLanes) {
-        const Lanes height_m = samples.heights_m(first);
+        const Eight eight = samples.eight(first, samples.heights_m(first));
+        const Lanes& height_m = eight.height_m;
         // samples without data are as good as cleared
-        const LaneMask is_known = (height_m != height_m) | ((height_m >= sweep.near_from_m_) &
-                                                            (height_m <= sweep.near_to_m_));
+        const LaneMask is_known = (height_m != height_m) | sweep.are_near_halfway_plane(eight);
         if (!any(~is_known)) continue;
-        const Eight eight = samples.eight(first, height_m);
         const LaneMask is_cleared =
             is_known | ((abs(height_m) <= sweep.highest_m_) &
                         are_sound<kSplitsAtOnce>(sweep.passages(eight), sweep.limits_, is_known));
@@ -247,10 +252,7 @@ class MovingTriangle::Sweep {
 
     TERRANE_LANES_INLINE bool run() const {
       const Eight corners = eight();
-      if (!any(~((corners.height_m >= sweep.near_from_m_) &
-                 (corners.height_m <= sweep.near_to_m_)))) {
-        return true;
-      }
+      if (!any(~sweep.are_near_halfway_plane(corners))) return true;
       return !any(~(abs(corners.height_m) <= sweep.highest_m_)) &&
              are_clear<kSplitsOfSlab>(sweep.passages(corners), sweep.limits_);
     }
@@ -297,6 +299,12 @@ class MovingTriangle::Sweep {
   /// times if all do: so many of the last coefficients are 0, and there is nothing to doubt.
   std::size_t vanishing() const {
     return meeting_ == 0 ? 0 : static_cast<std::size_t>(meeting_) - 1;
+  }
+
+  TERRANE_LANES_INLINE LaneMask are_near_halfway_plane(const Eight& eight) const {
+    const Lanes plane_m =
+        halfway_m_ + eight.y * halfway_per_row_m_ + eight.x * halfway_per_column_m_;
+    return abs(eight.height_m - plane_m) <= halfway_room_m_;
   }
 
   TERRANE_LANES_INLINE Passages passages(const Eight& eight) const {
@@ -365,7 +373,8 @@ class MovingTriangle::Sweep {
   float constant_[3][3], per_column_[3][3], per_row_[3][3], first_m_[3], last_m_[3];
   Limits limits_;
   float highest_m_;
-  float near_from_m_, near_to_m_;  // heights that are near those of all corners
+  // HalfwayPlane from the first corner on, and how far from it is surely near enough
+  float halfway_m_, halfway_per_column_m_, halfway_per_row_m_, halfway_room_m_;
 };
 
 /// All samples under some hull, or where there are many, those that no slab clears.

@@ -99,8 +99,8 @@ struct FallingSide {
   FallingSide() = default;
 };
 
-/// The most sides that for_each_span_between() takes: all lines between six points.
-inline constexpr std::size_t kMostSides = 15;
+/// The most sides that for_each_span_between() takes: those of a hull of six points.
+inline constexpr std::size_t kMostSides = 6;
 
 /// Calls visit(row, first_column, last_column) for each row of samples between the leftmost and the
 /// rightmost of some sides that go all around, or nearer to them than \p slack_cells, in columns
@@ -225,19 +225,44 @@ bool for_each_sample(const FieldPoint& a, const FieldPoint& b, const FieldPoint&
       });
 }
 
-/// The sides of the convex hull of 3 to 6 points, and the lines between all others of them.
+/// The sides of the convex hull of 3 to 6 points.
 class HullSides {
  public:
   explicit HullSides(std::span<const FieldPoint> points) {
-    for (const FieldPoint& p : points) {
-      for (const FieldPoint& q : points) {
-        if (&p < &q) sides_[count_++] = {&p, &q};
-      }
+    std::array<const FieldPoint*, kMostSides> memory{};
+    const auto sorted = std::span(memory).first(points.size());
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(k);
+      *end = &points[k];
+      std::rotate(std::upper_bound(sorted.begin(), end, *end, is_left_of), end, end + 1);
     }
+    add_half(sorted);
+    std::ranges::reverse(sorted);
+    add_half(sorted);
   }
   std::span<const FieldSide> sides() const { return std::span(sides_).first(count_); }
 
  private:
+  /// From the first point to the last on one side of all others (Andrew's monotone chain).
+  void add_half(std::span<const FieldPoint* const> sorted) {
+    const std::size_t first = count_;
+    const FieldPoint* from = sorted[0];
+    for (const FieldPoint* to : sorted.subspan(1)) {
+      while (count_ > first && !turns_left(sides_[count_ - 1], *to)) from = sides_[--count_].first;
+      sides_[count_++] = {from, to};
+      from = to;
+    }
+  }
+  static bool is_left_of(const FieldPoint* a, const FieldPoint* b) {
+    return a->column < b->column || (a->column == b->column && a->row < b->row);
+  }
+  static bool turns_left(const FieldSide& side, const FieldPoint& to) {
+    const auto& [p, q] = side;
+    return (q->column - p->column) * (to.row - p->row) -
+               (q->row - p->row) * (to.column - p->column) >
+           0;
+  }
+
   std::array<FieldSide, kMostSides> sides_;
   std::size_t count_ = 0;
 };

@@ -74,12 +74,6 @@ void Star::make_room_for_corners(std::size_t count) {
   triangles_.resize(size);
 }
 
-Star::Centre Star::centre(GridPoint plan) const {
-  constexpr float kCellsPerUnit = 1.0F / kUnitsPerCell;
-  return {static_cast<float>(plan.x - origin_.plan.x) * kCellsPerUnit,
-          static_cast<float>(plan.y - origin_.plan.y) * kCellsPerUnit};
-}
-
 void Star::pad_samples() {
   if (sample_count_ == 0) return;
   for (std::size_t k = sample_count_; k % kPadding != 0; ++k) {

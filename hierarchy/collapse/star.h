@@ -50,7 +50,11 @@ class Star {
   struct Centre {
     float x = 0, y = 0;
   };
-  Centre centre(GridPoint plan) const;
+  Centre centre(GridPoint plan) const {
+    constexpr float kCellsPerUnit = 1.0F / kUnitsPerCell;
+    return {static_cast<float>(plan.x - origin_.plan.x) * kCellsPerUnit,
+            static_cast<float>(plan.y - origin_.plan.y) * kCellsPerUnit};
+  }
 
   const Place& origin() const { return origin_; }
   bool is_closed() const { return is_closed_; }

@@ -190,11 +190,6 @@ void HalfedgeMesh::count_valences() {
   for (const VertexId v : start_) ++valence_[v];
 }
 
-bool HalfedgeMesh::is_ghost(TriangleId t) const {
-  return is_ghost(start_[halfedge(t, 0)]) || is_ghost(start_[halfedge(t, 1)]) ||
-         is_ghost(start_[halfedge(t, 2)]);
-}
-
 bool HalfedgeMesh::is_boundary(VertexId v) const {
   const HalfedgeId first = outgoing(v);
   if (first == kNoHalfedge) return false;

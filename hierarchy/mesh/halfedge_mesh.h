@@ -53,7 +53,10 @@ class HalfedgeMesh {
   bool is_split(VertexId v) const { return split_[origin(v)]; }
 
   bool is_ghost(VertexId v) const { return index(v) >= vertex_count_; }
-  bool is_ghost(TriangleId t) const;
+  bool is_ghost(TriangleId t) const {
+    return is_ghost(start_[halfedge(t, 0)]) || is_ghost(start_[halfedge(t, 1)]) ||
+           is_ghost(start_[halfedge(t, 2)]);
+  }
   bool is_live(TriangleId t) const { return live_[t]; }
   /// Does v touch the boundary?
   bool is_boundary(VertexId v) const;

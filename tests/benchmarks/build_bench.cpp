@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "core/freed_memory.h"
 #include "ingest/scan.h"
 #include "tiler/build.h"
 #include "tiler/build_tile.h"
@@ -181,3 +182,11 @@ BENCHMARK(BM_BuildAllLevels)->Arg(1)->Arg(10)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace terrane
+
+int main(int argc, char** argv) {
+  terrane::keep_freed_memory();  // as the program does
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}

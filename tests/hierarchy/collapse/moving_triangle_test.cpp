@@ -110,6 +110,31 @@ TEST(MovingTriangle, ThatBecomesALineIsJudgedOnTheWay) {
   EXPECT_FALSE(MovingTriangle(from, to, 0).stays_within(sample, worst_m * 0.95));
 }
 
+TEST(MovingTriangle, AgreesOverAFieldWithALookAtOneSampleAfterTheOther) {
+  RandomTriangles random;
+  int sound = 0, unsound = 0;
+  for (int n = 0; n < 3000; ++n) {
+    const Triangle from = random.next();
+    Triangle to = random.next();
+    if (n % 3 > 0) to[2] = from[2];
+    if (n % 3 > 1) to[1] = from[1];
+    if (!stays_up(from, to)) continue;
+    const double tolerance_m = 2 + random.point().column;
+    SampleField field{5, 5, {}};
+    for (int k = 0; k < 25; ++k) field.heights_m.push_back(random.point().height_m / 4 + 6);
+    const MovingTriangle moving(from, to, field.slack_cells);
+    bool is_each_near = true;
+    for (int k = 0; k < 25; ++k) {
+      const FieldSample sample{float(k % 5), float(k / 5), field.heights_m[std::size_t(k)]};
+      is_each_near = is_each_near && moving.stays_within(sample, tolerance_m);
+    }
+    EXPECT_EQ(moving.stays_within(field, {}, tolerance_m), is_each_near) << n;
+    ++(is_each_near ? sound : unsound);
+  }
+  EXPECT_GT(sound, 300);
+  EXPECT_GT(unsound, 300);
+}
+
 TEST(MovingTriangle, SeesEverySampleOnItsWay) {
   // sweeps over (5, 1), which is under neither end
   SampleField field{8, 4, std::vector<double>(32, 0.0)};

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <set>
+#include <vector>
 
 namespace terrane::hierarchy {
 namespace {
@@ -58,6 +61,38 @@ TEST(SampleField, AReducedFieldGivesExactlyTheKeptSamplesUnderATriangle) {
       }
       EXPECT_EQ(visited(triangle, field, 0.01), expected) << "blocks of " << block;
     }
+  }
+}
+
+/// Is a point in the convex hull? Where it is not, all points are to one side of a line through it.
+bool is_in_hull(std::span<const FieldPoint> points, double column, double row) {
+  std::vector<double> angles;
+  for (const FieldPoint& p : points) angles.push_back(std::atan2(p.row - row, p.column - column));
+  std::ranges::sort(angles);
+  double widest = angles.front() + 2 * std::numbers::pi - angles.back();
+  for (std::size_t k = 1; k < angles.size(); ++k) {
+    widest = std::max(widest, angles[k] - angles[k - 1]);
+  }
+  return widest <= std::numbers::pi;
+}
+
+TEST(SampleField, SpansOfAHullAreItsSamplesAndNoOthers) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> corner(-5, 45);
+  for (int trial = 0; trial < 300; ++trial) {
+    std::vector<FieldPoint> points(3 + static_cast<std::size_t>(trial) % 4);
+    for (FieldPoint& p : points) p = {corner(random), corner(random), 0};
+    const HullSides hull(points);
+    std::set<std::pair<std::int64_t, std::int64_t>> found, expected;
+    for_each_span_between(hull.sides(), {40, 40}, 1e-9,
+                          [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+                            for (; first <= last; ++first) found.emplace(first, row);
+                            return true;
+                          });
+    for (int k = 0; k < 1600; ++k) {
+      if (is_in_hull(points, k % 40, k / 40)) expected.emplace(k % 40, k / 40);
+    }
+    EXPECT_EQ(found, expected) << trial;
   }
 }
 
