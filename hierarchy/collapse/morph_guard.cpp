@@ -17,10 +17,6 @@ constexpr double kShareOfAltitude = 0.25;
 // with more samples than that under a triangle, all threads look at those that move
 constexpr std::size_t kManySamples = 100;
 
-// with more than that, it pays to look at blocks of samples first
-constexpr std::size_t kManyForSlabs = 1000;
-constexpr std::int64_t kSideOfSlabs = 16;
-
 using PlanVector = PlanPoint;
 using PlanTriangle = std::array<PlanPoint, 3>;
 using Passage = std::array<PlanPoint, 6>;  // corners before and after
@@ -88,9 +84,6 @@ MorphGuard::MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
       incident_(triangles_.size() * 3),
       has_large_triangles_(field.sample_count() > kManySamples * triangles_.size()),
       checked_(triangles_.size(), 0) {
-  if (field.has_grid() && field.sample_count() > kManyForSlabs * triangles_.size()) {
-    slabs_ = field.slabs_of_grid(kSideOfSlabs);
-  }
   for (std::uint32_t v = 0; v < finer_.size(); ++v) {
     target_[v] = VertexId{v};
     next_member_[v] = v;
@@ -136,7 +129,7 @@ bool MorphGuard::is_sound(const Corners& triangle, std::span<const VertexId> cor
     end[k] = field_point(places[3 + k]);
   }
   return is_upright(places) &&
-         MovingTriangle(begin, end, field_.slack_cells).stays_within(field_, slabs_, tolerance_m_);
+         MovingTriangle(begin, end, field_.slack_cells).stays_within(field_, tolerance_m_);
 }
 
 bool MorphGuard::allows(std::span<const VertexId> core, const Place& target) {

@@ -58,7 +58,6 @@ class MorphGuard {
   std::vector<std::uint32_t> next_member_;  // members of a coarse vertex: a ring through itself
   std::vector<std::uint32_t> first_incident_, incident_;
   bool has_large_triangles_;
-  HeightSlabs slabs_;
   std::vector<std::uint32_t> checked_, moved_;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   std::uint32_t refusing_ = kNone;  // fine triangle for which a place was last refused

@@ -377,12 +377,13 @@ class MovingTriangle::Sweep {
   float halfway_m_, halfway_per_column_m_, halfway_per_row_m_, halfway_room_m_;
 };
 
-/// All samples under some hull, or where there are many, those that no slab clears.
+/// All samples under some hull; where there are slabs, those that they do not clear.
 bool MovingTriangle::stays_within_all(std::span<const FieldPoint> hull, const SampleField& field,
-                                      const HeightSlabs& slabs, double tolerance_m) const {
+                                      double tolerance_m) const {
   const auto for_each_row = [&](const auto& visit) {
     return for_each_span_of_hull(hull, {field.columns, field.rows}, field.slack_cells, visit);
   };
+  const HeightSlabs& slabs = field.slabs;
   const double beside_cells = slabs.empty() ? 0 : static_cast<double>(slabs.side());
   const Sweep sweep(*this, tolerance_m, kMargin + beside_cells);
   if (slabs.empty()) {
@@ -390,14 +391,13 @@ bool MovingTriangle::stays_within_all(std::span<const FieldPoint> hull, const Sa
       return sweep(field, {row, first, last});
     });
   }
-  const bool has_samples = field.slabs.empty();
   const auto over_blocks = [&](std::span<const RowSpan> spans) {
     return for_each_block_of(spans, slabs.side(), [&](std::int64_t first, std::int64_t last) {
       if (sweep.is_clear_of(slabs, first, spans[0].row)) return true;
       return std::ranges::all_of(spans, [&](const RowSpan& whole) {
         const RowSpan span{whole.row, std::max(whole.first, first), std::min(whole.last, last)};
         if (span.first > span.last) return true;
-        return has_samples ? sweep(field, span) : sweep(slabs, span);
+        return field.has_grid() ? sweep(field, span) : sweep(slabs, span);
       });
     });
   };
@@ -408,8 +408,7 @@ bool MovingTriangle::stays_within_all(std::span<const FieldPoint> hull, const Sa
          rows.end();
 }
 
-bool MovingTriangle::stays_within(const SampleField& field, const HeightSlabs& slabs,
-                                  double tolerance_m) const {
+bool MovingTriangle::stays_within(const SampleField& field, double tolerance_m) const {
   // a point under the triangle is at any time between two that are under it at the ends
   std::array<FieldPoint, 6> corners{from_[0], from_[1], from_[2]};
   std::size_t count = 3;
@@ -418,13 +417,13 @@ bool MovingTriangle::stays_within(const SampleField& field, const HeightSlabs& s
   }
   if (count == 3) return true;
   const std::span<const FieldPoint> hull = std::span(corners).first(count);
-  if (!field.is_reduced()) return stays_within_all(hull, field, slabs, tolerance_m);
-  // the few first: most that is refused is so by them
-  const Sweep over_kept(*this, tolerance_m, kMargin);
-  if (!for_each_kept_run_of_hull(hull, field, field.slack_cells, over_kept)) return false;
-  if (!field.is_backed()) return true;
-  if (!field.slabs.empty()) return stays_within_all(hull, field, field.slabs, tolerance_m);
-  return stays_within_all(hull, field, slabs, tolerance_m - field.behind.rounding_m());
+  if (!field.is_reduced()) return stays_within_all(hull, field, tolerance_m);
+  if (!field.behind.empty()) {
+    return stays_within_all(hull, field, tolerance_m - field.behind.rounding_m());
+  }
+  if (field.is_backed()) return stays_within_all(hull, field, tolerance_m);
+  return for_each_kept_run_of_hull(hull, field, field.slack_cells,
+                                   Sweep(*this, tolerance_m, kMargin));
 }
 
 }  // namespace terrane::hierarchy

@@ -4,7 +4,6 @@
 #include <limits>
 #include <span>
 
-#include "hierarchy/collapse/height_slabs.h"
 #include "hierarchy/collapse/sample_field.h"
 
 namespace terrane::hierarchy {
@@ -28,16 +27,14 @@ class MovingTriangle {
   /// is left to the triangle on the other side of the edge.
   bool stays_within(const FieldSample& sample, double tolerance_m) const;
 
-  /// The same for all samples of a field.
-  /// \param slabs  of the field, which then takes less time where many samples are under the
-  ///               triangle; or none.
-  bool stays_within(const SampleField& field, const HeightSlabs& slabs, double tolerance_m) const;
+  /// The same for all samples of a field, those behind it if it is backed.
+  bool stays_within(const SampleField& field, double tolerance_m) const;
 
  private:
   class Sweep;
 
   bool stays_within_all(std::span<const FieldPoint> hull, const SampleField& field,
-                        const HeightSlabs& slabs, double tolerance_m) const;
+                        double tolerance_m) const;
 
   /// Twice the area between the sample and an edge, at times that do not matter here: affine.
   struct Affine {

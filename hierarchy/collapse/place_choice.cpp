@@ -182,7 +182,7 @@ bool PlaceChoice::is_sound(const Place& place) const {
 bool PlaceChoice::holds(const Place& place) {
   if (!judge_.holds(star_, place, search_.tolerance_m)) return false;
   if (!all_.field.is_backed()) return true;
-  const StarError error = error_of_star(star_, place, all_.field);
+  const StarError error = error_of_star(star_, place, all_.field, search_.tolerance_m);
   if (error.most_m <= search_.tolerance_m) return true;
   star_.learn(error.worst);
   has_learnt_ = true;

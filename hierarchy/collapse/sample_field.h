@@ -43,12 +43,14 @@ struct SampleField {
   /// kept[first_kept[k + 1] - 1].
   std::vector<FieldSample> kept = {};
   std::vector<std::uint32_t> first_kept = {};
-  CodedHeights behind = {};  ///< all samples, or none
-  HeightSlabs slabs = {};    ///< of all samples, where they are too many to be behind; or none
+  CodedHeights behind = {};  ///< if reduced: all samples, or none
+  /// Of all samples, or none: with those it takes less time to hold large triangles against them,
+  /// and where they are too many to be behind, it stands for them.
+  HeightSlabs slabs = {};
 
   bool is_reduced() const { return block_cells > 1; }
   /// Is it reduced, and are all samples or their slabs behind it?
-  bool is_backed() const { return !behind.empty() || !slabs.empty(); }
+  bool is_backed() const { return is_reduced() && (!behind.empty() || !slabs.empty()); }
   /// Blocks along the columns and rows; the last may be smaller.
   GridShape blocks() const {
     return {(columns + block_cells - 1) / block_cells, (rows + block_cells - 1) / block_cells};

@@ -71,11 +71,7 @@ class Sector {
   }
   template <class Visit>
   void for_each_span_of(const SampleField& field, const Visit& visit) const {
-    for_each_span(a_, b_, c_, {field.columns, field.rows}, field.slack_cells,
-                  [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-                    visit(row, first, last);
-                    return true;
-                  });
+    for_each_span(a_, b_, c_, {field.columns, field.rows}, field.slack_cells, visit);
   }
 
  private:
@@ -83,18 +79,65 @@ class Sector {
   double per_column_m_, per_row_m_;
 };
 
-void raise_by_samples(const Sector& sector, const SampleField& field, StarError& error) {
+void raise_by_row(const Sector& sector, const CodedHeights& heights, const RowSpan& span,
+                  StarError& error) {
+  const RowPart part{
+      heights.row(span.first, span.row), span.last - span.first + 1,
+      sector.height_m(static_cast<double>(span.first), static_cast<double>(span.row)),
+      sector.per_column_m()};
+  const double most_m = has_wide_lanes() ? run_wide(part) : run_portable(part);
+  if (most_m <= error.most_m) return;
+  const std::int64_t column = span.first + part.find(most_m);
+  error = {
+      most_m,
+      {static_cast<float>(column), static_cast<float>(span.row), heights.row(column, span.row)[0]}};
+}
+
+void raise_by_rows(const Sector& sector, const SampleField& field, StarError& error) {
   sector.for_each_span_of(field, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-    const RowPart part{field.behind.row(first, row), last - first + 1,
-                       sector.height_m(static_cast<double>(first), static_cast<double>(row)),
-                       sector.per_column_m()};
-    const double most_m = has_wide_lanes() ? run_wide(part) : run_portable(part);
-    if (most_m <= error.most_m) return;
-    const std::int64_t column = first + part.find(most_m);
-    error = {
-        most_m,
-        {static_cast<float>(column), static_cast<float>(row), field.behind.row(column, row)[0]}};
+    raise_by_row(sector, field.behind, {row, first, last}, error);
+    return true;
   });
+}
+
+/// The farthest that the triangle's plane can be from a sample of the block that some sample is in.
+double most_of_block_m(const Sector& sector, const HeightSlabs& slabs, std::int64_t column,
+                       std::int64_t row) {
+  const std::int64_t side = slabs.side(), left = column / side * side, top = row / side * side;
+  const HeightSlab& slab = slabs.at(column / side, row / side);
+  if (slab.is_empty()) return 0;
+  double most_m = 0;
+  for (const std::int64_t right : {std::int64_t{0}, side - 1}) {
+    for (const std::int64_t down : {std::int64_t{0}, side - 1}) {
+      const auto r = static_cast<double>(right), d = static_cast<double>(down);
+      const double on_sector_m =
+          sector.height_m(static_cast<double>(left) + r, static_cast<double>(top) + d);
+      most_m = std::max(most_m, std::abs(on_sector_m - slab.middle_m(r, d)));
+    }
+  }
+  return most_m + slab.half_m;
+}
+
+/// The same as by rows, less the blocks that are surely within the tolerance.
+void raise_by_blocks(const Sector& sector, const SampleField& field, double tolerance_m,
+                     StarError& error) {
+  const std::int64_t side = field.slabs.side();
+  const auto over_blocks = [&](std::span<const RowSpan> spans) {
+    return for_each_block_of(spans, side, [&](std::int64_t first, std::int64_t last) {
+      const double enough_m = std::max(tolerance_m, error.most_m);
+      if (most_of_block_m(sector, field.slabs, first, spans[0].row) <= enough_m) return true;
+      for (const RowSpan& whole : spans) {
+        const RowSpan span{whole.row, std::max(whole.first, first), std::min(whole.last, last)};
+        if (span.first <= span.last) raise_by_row(sector, field.behind, span, error);
+      }
+      return true;
+    });
+  };
+  SlabRows rows(side, over_blocks);
+  sector.for_each_span_of(field, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+    return rows.add(row, first, last);
+  });
+  rows.end();
 }
 
 /// The same where all that is known of the samples is the slab they are in: in a row, what is
@@ -124,19 +167,28 @@ void raise_by_slabs(const Sector& sector, const SampleField& field, StarError& e
       const std::int64_t end = std::min(last, begin / side * side + side - 1);
       raise_by_slab(sector, field.slabs, {row, begin, end}, error);
     }
+    return true;
   });
 }
 
 }  // namespace
 
-StarError error_of_star(const Star& star, const Place& centre, const SampleField& field) {
+StarError error_of_star(const Star& star, const Place& centre, const SampleField& field,
+                        double tolerance_m) {
   StarError error;
-  const bool has_slabs = !field.slabs.empty();
+  const bool has_samples = !field.behind.empty(), has_slabs = !field.slabs.empty();
+  const double rounding_m = has_samples ? field.behind.rounding_m() : 0;
   for (std::size_t s = 0; s < star.sector_count(); ++s) {
     const Sector sector(centre, star.corner(s), star.corner(s + 1));
-    has_slabs ? raise_by_slabs(sector, field, error) : raise_by_samples(sector, field, error);
+    if (!has_samples) {
+      raise_by_slabs(sector, field, error);
+    } else if (has_slabs) {
+      raise_by_blocks(sector, field, tolerance_m - rounding_m, error);
+    } else {
+      raise_by_rows(sector, field, error);
+    }
   }
-  if (!has_slabs) error.most_m += field.behind.rounding_m();
+  error.most_m += rounding_m;
   return error;
 }
 

@@ -49,7 +49,7 @@ void add_left(const std::array<FieldPoint, 3>& from, const std::array<FieldPoint
               const PatchField& patch, double tolerance_m, std::vector<FieldSample>& left) {
   const SampleField& field = patch.field();
   const hierarchy::MovingTriangle moving(from, to, field.slack_cells);
-  if (moving.stays_within(field, {}, tolerance_m)) return;
+  if (moving.stays_within(field, tolerance_m)) return;
   const FieldPoint corners[] = {from[0], from[1], from[2], to[0], to[1], to[2]};
   hierarchy::for_each_span_of_hull(
       corners, {field.columns, field.rows}, field.slack_cells,

@@ -16,6 +16,10 @@ constexpr std::int64_t kBlockOfLoose_cells = 2;
 // 272 MB
 constexpr std::int64_t kMostSlabs = 17'000'000;
 
+// with more samples than that under a triangle, it pays to look at blocks of them first
+constexpr double kManySamples = 1000;
+constexpr std::int64_t kSideOfSlabs = 16;
+
 bool is_before(const FieldSample& a, const FieldSample& b) {
   return std::pair(a.row, a.column) < std::pair(b.row, b.column);
 }
@@ -149,6 +153,8 @@ Reference::Reference(const TileSamples& samples, const TileFrame& frame, double 
   } else {
     field_.heights_m = all_heights_m(samples, frame);
   }
+  const bool has_many = samples.samples_per_triangle() > kManySamples;
+  if (has_many && field_.has_grid()) field_.slabs = field_.slabs_of_grid(kSideOfSlabs);
   field_.slack_cells = slack_cells;
 }
 

@@ -47,6 +47,7 @@ TileSamples::TileSamples(const HeightSource& heights, const Window& window, std:
       loose_(loose),
       window_(window),
       margin_(margin),
+      input_triangles_(input_triangles),
       block_cells_(fitting_block_cells(window, input_triangles)) {
   const std::int64_t trend_cells = kBlocksPerTrend * block_cells_;
   patch_columns_ = window_.columns;
@@ -65,6 +66,11 @@ TileSamples::TileSamples(const HeightSource& heights, const Window& window, std:
   }
   patches_along_row_ = (window_.columns + patch_columns_ - 1) / patch_columns_;
   if (patch_count() == 1) whole_ = read(window_);
+}
+
+double TileSamples::samples_per_triangle() const {
+  return static_cast<double>(window_.columns) * static_cast<double>(window_.rows) /
+         static_cast<double>(std::max<std::size_t>(1, input_triangles_));
 }
 
 HeightGrid TileSamples::read(const Window& patch) const {

@@ -40,6 +40,9 @@ class TileSamples {
   void for_each_patch(
       const std::function<void(std::size_t, const Window&, const HeightGrid&)>& visit) const;
 
+  /// Samples for each input triangle.
+  double samples_per_triangle() const;
+
   bool has_loose() const { return loose_ != nullptr; }
 
   /// The loose samples of a patch, and of \p margin cells around it; columns and rows count from
@@ -64,6 +67,7 @@ class TileSamples {
   const LooseSamples* loose_;
   Window window_;
   std::int64_t margin_;
+  std::size_t input_triangles_;
   std::int64_t block_cells_;
   std::int64_t patch_columns_ = 0, patch_rows_ = 0, patches_along_row_ = 0;
   std::vector<Window> patches_;

@@ -128,7 +128,7 @@ TEST(MovingTriangle, AgreesOverAFieldWithALookAtOneSampleAfterTheOther) {
       const FieldSample sample{float(k % 5), float(k / 5), field.heights_m[std::size_t(k)]};
       is_each_near = is_each_near && moving.stays_within(sample, tolerance_m);
     }
-    EXPECT_EQ(moving.stays_within(field, {}, tolerance_m), is_each_near) << n;
+    EXPECT_EQ(moving.stays_within(field, tolerance_m), is_each_near) << n;
     ++(is_each_near ? sound : unsound);
   }
   EXPECT_GT(sound, 300);
@@ -141,8 +141,8 @@ TEST(MovingTriangle, SeesEverySampleOnItsWay) {
   field.heights_m[1 * 8 + 4] = 100;
   const Triangle from{FieldPoint{0, 2, 0}, {2, 2, 0}, {1, 0, 0}};
   const Triangle to{FieldPoint{5, 2, 0}, {7, 2, 0}, {6, 0, 0}};
-  EXPECT_FALSE(MovingTriangle(from, to, 1e-7).stays_within(field, {}, 1));
-  EXPECT_TRUE(MovingTriangle(from, to, 1e-7).stays_within(field, {}, 101));
+  EXPECT_FALSE(MovingTriangle(from, to, 1e-7).stays_within(field, 1));
+  EXPECT_TRUE(MovingTriangle(from, to, 1e-7).stays_within(field, 101));
 }
 
 }  // namespace
