@@ -82,7 +82,8 @@ class TileBuild {
       : source_(source),
         tile_(tile),
         samples_(source.heights, source.pyramid.window(tile),
-                 normal_reach(source.pyramid.octave(tile.level)), input_triangles, source.loose),
+                 normal_reach(source.pyramid.octave(tile.level)), input_triangles, source.loose,
+                 Behind::kAllSamples),
         frame_(source.world, source.lattice, samples_.window(), tile.level),
         reference_(samples_, frame_, step_m() / frame_.spacing_m()) {}
 

@@ -39,7 +39,9 @@ class StrictCollapse {
         walker_(mesh_),
         placer_(placer),
         options_(options),
-        sample_count_(field.kept.empty() ? static_cast<double>(field.heights_m.size()) : 0),
+        sample_count_(field.is_reduced() && !field.is_backed()
+                          ? 0
+                          : static_cast<double>(field.sample_count())),
         samples_(field, vertices_, mesh_.triangles(), mesh_.triangle_count()),
         guard_(guard_of(finer, field)),
         choice_({mesh_, vertices_, samples_, field, placer, options.shape,
@@ -339,7 +341,8 @@ class StrictCollapse {
   StencilWalker walker_;
   const Placer& placer_;
   const StrictOptions& options_;
-  // 0 where they are picked: a tile is then tried several times, and polish would be paid each time
+  // 0 where nothing is behind those kept: a tile is then tried several times, and polish would be
+  // paid each time
   double sample_count_;
   CoveredSamples samples_;
   std::optional<MorphGuard> guard_;

@@ -14,16 +14,22 @@ constexpr std::int64_t kMostSamplesInPatch = std::int64_t{1} << 21;
 // files are stored in rows or in blocks of about this many
 constexpr std::int64_t kFewestRows = 64;
 
-// kept in any case: 150 MB
-constexpr double kMostKeptSamples = 4.5e6;
+/// How many samples are kept in any case, and how many to each input triangle.
+struct KeptSamples {
+  double most, per_triangle;
+};
 
-// fewer left triangles of the finer level without a sample
-constexpr double kSamplesPerTriangle = 6;
+// 150 MB; fewer left triangles of the finer level without a sample
+constexpr KeptSamples kAlone{4.5e6, 6};
 
-std::int64_t fitting_block_cells(const Window& window, std::size_t input_triangles) {
+// fewer cost more than 1 % of the triangles (docs/benchmarks.md)
+constexpr KeptSamples kBacked{4e5, 100};
+
+std::int64_t fitting_block_cells(const Window& window, std::size_t input_triangles,
+                                 const KeptSamples& kept_samples) {
   const double samples = static_cast<double>(window.columns) * static_cast<double>(window.rows);
   const double most =
-      std::max(kMostKeptSamples, kSamplesPerTriangle * static_cast<double>(input_triangles));
+      std::max(kept_samples.most, kept_samples.per_triangle * static_cast<double>(input_triangles));
   std::int64_t block = 1;
   for (double kept = samples; kept > most;) {
     block *= 2;
@@ -42,13 +48,15 @@ Window widened(const Window& window, std::int64_t margin, const GridShape& shape
 }  // namespace
 
 TileSamples::TileSamples(const HeightSource& heights, const Window& window, std::int64_t margin,
-                         std::size_t input_triangles, const LooseSamples* loose)
+                         std::size_t input_triangles, const LooseSamples* loose, Behind behind)
     : heights_(heights),
       loose_(loose),
       window_(window),
       margin_(margin),
       input_triangles_(input_triangles),
-      block_cells_(fitting_block_cells(window, input_triangles)) {
+      block_cells_(fitting_block_cells(
+          window, input_triangles,
+          behind == Behind::kAllSamples && loose == nullptr ? kBacked : kAlone)) {
   const std::int64_t trend_cells = kBlocksPerTrend * block_cells_;
   patch_columns_ = window_.columns;
   patch_rows_ = window_.rows;

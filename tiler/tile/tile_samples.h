@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -11,6 +12,10 @@
 
 namespace terrane::tiler {
 
+/// What is behind a reduced reference (reference.h): nothing, or all samples or slabs of them. In
+/// that case it can do with fewer, as it learns those that it needs.
+enum class Behind : std::uint8_t { kNothing, kAllSamples };
+
 /// The samples under a mesh (a tile or a strip along a seam) and of a margin around it, read patch
 /// by patch: memory does not grow with their number.
 ///
@@ -21,13 +26,15 @@ class TileSamples {
   /// \param margin           samples that every patch holds beyond its own, as far as the DEM goes.
   /// \param input_triangles  of the mesh that is to be simplified over them.
   /// \param loose            what lies between them; null: nothing.
+  /// \param behind           the reduced reference, if there are no loose ones.
   TileSamples(const HeightSource& heights, const Window& window, std::int64_t margin,
-              std::size_t input_triangles, const LooseSamples* loose = nullptr);
+              std::size_t input_triangles, const LooseSamples* loose = nullptr,
+              Behind behind = Behind::kNothing);
 
   const Window& window() const { return window_; }
 
   /// Cells along a block of the reduced reference: a power of two, the smallest that leaves not too
-  /// many samples, and at least six to each input triangle; 1 where every sample is kept.
+  /// many samples, and at least some to each input triangle; 1 where every sample is kept.
   std::int64_t block_cells() const { return block_cells_; }
   /// Patches begin at multiples of this many blocks.
   static constexpr std::int64_t kBlocksPerTrend = 4;

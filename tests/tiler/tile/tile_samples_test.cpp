@@ -70,5 +70,23 @@ TEST(TileSamples, BlocksGrowUntilWhatIsKeptFitsButLeaveSixSamplesToATriangle) {
   EXPECT_LT(dense.block_cells(), coarse.block_cells());
 }
 
+class NoLooseSamples : public LooseSamples {
+ public:
+  std::vector<LooseSample> in(const Window&) const override { return {}; }
+};
+
+TEST(TileSamples, WhereAllStayBehindThemFewerAreKept) {
+  const FunctionDem dem({1 << 11, 1 << 11}, height);
+  const Window window{0, 0, 2000, 2000};
+  const NoLooseSamples none;
+  EXPECT_EQ(TileSamples(dem, window, 0, 1000).block_cells(), 1);
+  // a tenth of the samples, and a hundred to a triangle
+  EXPECT_EQ(TileSamples(dem, window, 0, 1000, nullptr, Behind::kAllSamples).block_cells(), 16);
+  EXPECT_EQ(TileSamples(dem, window, 0, 10'000, nullptr, Behind::kAllSamples).block_cells(), 8);
+  EXPECT_EQ(TileSamples(dem, window, 0, 40'000, nullptr, Behind::kAllSamples).block_cells(), 1);
+  // loose samples do not stay
+  EXPECT_EQ(TileSamples(dem, window, 0, 1000, &none, Behind::kAllSamples).block_cells(), 1);
+}
+
 }  // namespace
 }  // namespace terrane::tiler
