@@ -18,7 +18,7 @@ constexpr double kDoubt = 8e-6;
 
 // splits that eight samples take together before each is looked at alone
 constexpr int kSplitsAtOnce = 3;
-constexpr int kSplitsOfSlab = 2;
+constexpr int kSplitsOfSlab = 4;
 
 // samples looked at may lie so far beside a triangle's corners, in cells
 constexpr double kMargin = 4;
@@ -394,10 +394,8 @@ bool MovingTriangle::stays_within_all(std::span<const FieldPoint> hull, const Sa
   const auto over_blocks = [&](std::span<const RowSpan> spans) {
     return for_each_block_of(spans, slabs.side(), [&](std::int64_t first, std::int64_t last) {
       if (sweep.is_clear_of(slabs, first, spans[0].row)) return true;
-      return std::ranges::all_of(spans, [&](const RowSpan& whole) {
-        const RowSpan span{whole.row, std::max(whole.first, first), std::min(whole.last, last)};
-        if (span.first > span.last) return true;
-        return field.has_grid() ? sweep(field, span) : sweep(slabs, span);
+      return for_each_part_of(spans, first, last, [&](const RowSpan& part) {
+        return field.has_grid() ? sweep(field, part) : sweep(slabs, part);
       });
     });
   };

@@ -58,4 +58,15 @@ bool for_each_block_of(std::span<const RowSpan> spans, std::int64_t side, const 
   return true;
 }
 
+/// Calls visit(span) for the parts of spans that lie from one column to another. Stops and returns
+/// false as soon as visit does.
+template <class Visit>
+bool for_each_part_of(std::span<const RowSpan> spans, std::int64_t first, std::int64_t last,
+                      const Visit& visit) {
+  return std::ranges::all_of(spans, [&](const RowSpan& span) {
+    const RowSpan part{span.row, std::max(span.first, first), std::min(span.last, last)};
+    return part.first > part.last || visit(part);
+  });
+}
+
 }  // namespace terrane::hierarchy

@@ -118,28 +118,6 @@ double most_of_block_m(const Sector& sector, const HeightSlabs& slabs, std::int6
   return most_m + slab.half_m;
 }
 
-/// The same as by rows, less the blocks that are surely within the tolerance.
-void raise_by_blocks(const Sector& sector, const SampleField& field, double tolerance_m,
-                     StarError& error) {
-  const std::int64_t side = field.slabs.side();
-  const auto over_blocks = [&](std::span<const RowSpan> spans) {
-    return for_each_block_of(spans, side, [&](std::int64_t first, std::int64_t last) {
-      const double enough_m = std::max(tolerance_m, error.most_m);
-      if (most_of_block_m(sector, field.slabs, first, spans[0].row) <= enough_m) return true;
-      for (const RowSpan& whole : spans) {
-        const RowSpan span{whole.row, std::max(whole.first, first), std::min(whole.last, last)};
-        if (span.first <= span.last) raise_by_row(sector, field.behind, span, error);
-      }
-      return true;
-    });
-  };
-  SlabRows rows(side, over_blocks);
-  sector.for_each_span_of(field, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-    return rows.add(row, first, last);
-  });
-  rows.end();
-}
-
 /// The same where all that is known of the samples is the slab they are in: in a row, what is
 /// farthest is at an end.
 void raise_by_slab(const Sector& sector, const HeightSlabs& slabs, const RowSpan& span,
@@ -160,15 +138,29 @@ void raise_by_slab(const Sector& sector, const HeightSlabs& slabs, const RowSpan
   }
 }
 
-void raise_by_slabs(const Sector& sector, const SampleField& field, StarError& error) {
+/// By blocks of samples, less those that are surely within the tolerance.
+void raise_by_blocks(const Sector& sector, const SampleField& field, double tolerance_m,
+                     StarError& error) {
   const std::int64_t side = field.slabs.side();
+  const auto over_blocks = [&](std::span<const RowSpan> spans) {
+    return for_each_block_of(spans, side, [&](std::int64_t first, std::int64_t last) {
+      const double enough_m = std::max(tolerance_m, error.most_m);
+      if (most_of_block_m(sector, field.slabs, first, spans[0].row) <= enough_m) return true;
+      return for_each_part_of(spans, first, last, [&](const RowSpan& part) {
+        if (field.behind.empty()) {
+          raise_by_slab(sector, field.slabs, part, error);
+        } else {
+          raise_by_row(sector, field.behind, part, error);
+        }
+        return true;
+      });
+    });
+  };
+  SlabRows rows(side, over_blocks);
   sector.for_each_span_of(field, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-    for (std::int64_t begin = first; begin <= last; begin = begin / side * side + side) {
-      const std::int64_t end = std::min(last, begin / side * side + side - 1);
-      raise_by_slab(sector, field.slabs, {row, begin, end}, error);
-    }
-    return true;
+    return rows.add(row, first, last);
   });
+  rows.end();
 }
 
 }  // namespace
@@ -176,16 +168,13 @@ void raise_by_slabs(const Sector& sector, const SampleField& field, StarError& e
 StarError error_of_star(const Star& star, const Place& centre, const SampleField& field,
                         double tolerance_m) {
   StarError error;
-  const bool has_samples = !field.behind.empty(), has_slabs = !field.slabs.empty();
-  const double rounding_m = has_samples ? field.behind.rounding_m() : 0;
+  const double rounding_m = field.behind.empty() ? 0 : field.behind.rounding_m();
   for (std::size_t s = 0; s < star.sector_count(); ++s) {
     const Sector sector(centre, star.corner(s), star.corner(s + 1));
-    if (!has_samples) {
-      raise_by_slabs(sector, field, error);
-    } else if (has_slabs) {
-      raise_by_blocks(sector, field, tolerance_m - rounding_m, error);
-    } else {
+    if (field.slabs.empty()) {
       raise_by_rows(sector, field, error);
+    } else {
+      raise_by_blocks(sector, field, tolerance_m - rounding_m, error);
     }
   }
   error.most_m += rounding_m;

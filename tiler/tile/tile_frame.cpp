@@ -222,11 +222,6 @@ TileFrame::AlongRow TileFrame::Row::along(const Eigen::Vector3d& direction,
   return result;
 }
 
-double TileFrame::drop_m(double column, double row) const {
-  const double x = column - half_columns_, y = row - half_rows_;
-  return curvature_[0] * x * x + curvature_[1] * x * y + curvature_[2] * y * y;
-}
-
 Place TileFrame::solve(const Eigen::Vector3d& at) const {
   Eigen::Vector3d grid(half_columns_, half_rows_, 0);
   constexpr int kMostSteps = 40;

@@ -55,7 +55,10 @@ class TileFrame final : public hierarchy::Placer {
 
   /// Depth in metres below the tile's tangent plane at which the ellipsoid lies: what must be taken
   /// from a height so that a flat triangle becomes linear over the grid.
-  double drop_m(double column, double row) const;
+  double drop_m(double column, double row) const {
+    const double x = column - half_columns_, y = row - half_rows_;
+    return curvature_[0] * x * x + curvature_[1] * x * y + curvature_[2] * y * y;
+  }
 
   /// The place over the grid at which a lattice point of this level stands.
   hierarchy::Place place_of(const LatticePoint& point) const;
