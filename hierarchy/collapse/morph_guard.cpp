@@ -83,7 +83,8 @@ MorphGuard::MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
       first_incident_(finer_.size() + 1, 0),
       incident_(triangles_.size() * 3),
       has_large_triangles_(field.sample_count() > kManySamples * triangles_.size()),
-      checked_(triangles_.size(), 0) {
+      checked_(triangles_.size(), 0),
+      refused_(triangles_.size(), 0) {
   for (std::uint32_t v = 0; v < finer_.size(); ++v) {
     target_[v] = VertexId{v};
     next_member_[v] = v;
@@ -134,9 +135,10 @@ bool MorphGuard::is_sound(const Corners& triangle, std::span<const VertexId> cor
 
 bool MorphGuard::allows(std::span<const VertexId> core, const Place& target) {
   list_moved(core);
-  // what refused the last place is likely to refuse the next one, too
-  const auto first = std::ranges::find(moved_, refusing_);
-  if (first != moved_.end()) std::swap(*first, moved_.front());
+  // what refused a place is likely to refuse the next one, too
+  std::ranges::sort(moved_, std::ranges::greater(),
+                    [&](std::uint32_t t) { return std::pair(refused_[t], t); });
+  constexpr std::uint32_t kNone = ~std::uint32_t{0};
   std::atomic<std::uint32_t> refusing = kNone;
   const auto look_at = [&](std::size_t i) {
     if (refusing.load(std::memory_order_relaxed) != kNone) return;
@@ -148,7 +150,7 @@ bool MorphGuard::allows(std::span<const VertexId> core, const Place& target) {
     for (std::size_t i = 0; i < moved_.size(); ++i) look_at(i);
   }
   if (refusing == kNone) return true;
-  refusing_ = refusing;
+  refused_[refusing] = stamp_;
   return false;
 }
 

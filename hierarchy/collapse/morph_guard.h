@@ -59,8 +59,7 @@ class MorphGuard {
   std::vector<std::uint32_t> first_incident_, incident_;
   bool has_large_triangles_;
   std::vector<std::uint32_t> checked_, moved_;
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  std::uint32_t refusing_ = kNone;  // fine triangle for which a place was last refused
+  std::vector<std::uint32_t> refused_;  // stamp when a fine triangle last refused a place, or 0
   std::uint32_t stamp_ = 0;
 };
 
