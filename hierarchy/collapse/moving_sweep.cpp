@@ -67,14 +67,14 @@ class MovingTriangle::Sweep {
           static_cast<float>(-triangle.slack_ * std::max(0.0, whole[i]) - area_doubt);
     }
     highest_m_ = static_cast<float>(2 * (relief_m + tolerance_m));
-    const HalfwayPlane plane(triangle.from_, triangle.to_);
-    halfway_m_ = static_cast<float>(plane.height_m);
-    halfway_per_column_m_ = static_cast<float>(plane.per_column_m);
-    halfway_per_row_m_ = static_cast<float>(plane.per_row_m);
-    const double rise_m = std::abs(plane.per_column_m) + std::abs(plane.per_row_m);
+    const auto& [plane, farthest_m] = HalfwayPlane(triangle.from_, triangle.to_);
+    halfway_m_ = static_cast<float>(plane.height_m(origin.column, origin.row) - origin.height_m);
+    halfway_per_column_m_ = static_cast<float>(plane.per_column_m());
+    halfway_per_row_m_ = static_cast<float>(plane.per_row_m());
+    const double rise_m = std::abs(plane.per_column_m()) + std::abs(plane.per_row_m());
     // samples may lie beside the triangle, by at most the slack on two sides
     halfway_room_m_ =
-        static_cast<float>(tolerance_m - plane.farthest_m * (1 + 4 * triangle.slack_) -
+        static_cast<float>(tolerance_m - farthest_m * (1 + 4 * triangle.slack_) -
                            kDoubt * (relief_m + tolerance_m + rise_m * (reach + margin_cells)));
   }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "hierarchy/collapse/field_plane.h"
 #include "hierarchy/collapse/lanes.h"
 #include "hierarchy/collapse/slab_rows.h"
 
@@ -56,19 +57,9 @@ struct RowPart {
 class Sector {
  public:
   Sector(const Place& a, const Place& b, const Place& c)
-      : a_(field_point(a)), b_(field_point(b)), c_(field_point(c)) {
-    const double bx = b_.column - a_.column, by = b_.row - a_.row;
-    const double cx = c_.column - a_.column, cy = c_.row - a_.row;
-    const double bz = b_.height_m - a_.height_m, cz = c_.height_m - a_.height_m;
-    const double area = bx * cy - by * cx;
-    per_column_m_ = (bz * cy - cz * by) / area;
-    per_row_m_ = (bx * cz - cx * bz) / area;
-  }
+      : a_(field_point(a)), b_(field_point(b)), c_(field_point(c)), plane_(a_, b_, c_) {}
 
-  double per_column_m() const { return per_column_m_; }
-  double height_m(double column, double row) const {
-    return a_.height_m + (column - a_.column) * per_column_m_ + (row - a_.row) * per_row_m_;
-  }
+  const FieldPlane& plane() const { return plane_; }
   template <class Visit>
   void for_each_span_of(const SampleField& field, const Visit& visit) const {
     for_each_span(a_, b_, c_, {field.columns, field.rows}, field.slack_cells, visit);
@@ -76,15 +67,15 @@ class Sector {
 
  private:
   FieldPoint a_, b_, c_;
-  double per_column_m_, per_row_m_;
+  FieldPlane plane_;
 };
 
 void raise_by_row(const Sector& sector, const CodedHeights& heights, const RowSpan& span,
                   StarError& error) {
   const RowPart part{
       heights.row(span.first, span.row), span.last - span.first + 1,
-      sector.height_m(static_cast<double>(span.first), static_cast<double>(span.row)),
-      sector.per_column_m()};
+      sector.plane().height_m(static_cast<double>(span.first), static_cast<double>(span.row)),
+      sector.plane().per_column_m()};
   const double most_m = has_wide_lanes() ? run_wide(part) : run_portable(part);
   if (most_m <= error.most_m) return;
   const std::int64_t column = span.first + part.find(most_m);
@@ -111,7 +102,7 @@ double most_of_block_m(const Sector& sector, const HeightSlabs& slabs, std::int6
     for (const std::int64_t down : {std::int64_t{0}, side - 1}) {
       const auto r = static_cast<double>(right), d = static_cast<double>(down);
       const double on_sector_m =
-          sector.height_m(static_cast<double>(left) + r, static_cast<double>(top) + d);
+          sector.plane().height_m(static_cast<double>(left) + r, static_cast<double>(top) + d);
       most_m = std::max(most_m, std::abs(on_sector_m - slab.middle_m(r, d)));
     }
   }
@@ -129,7 +120,7 @@ void raise_by_slab(const Sector& sector, const HeightSlabs& slabs, const RowSpan
     const auto c = static_cast<double>(column), r = static_cast<double>(span.row);
     const double middle_m =
         slab.middle_m(static_cast<double>(column % side), static_cast<double>(span.row % side));
-    const double above_m = sector.height_m(c, r) - middle_m;
+    const double above_m = sector.plane().height_m(c, r) - middle_m;
     const double most_m = std::abs(above_m) + slab.half_m;
     if (most_m <= error.most_m) continue;
     error = {most_m,

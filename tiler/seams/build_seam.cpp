@@ -32,9 +32,10 @@ class SeamBuild {
       : source_(source),
         seam_(seam),
         strip_(std::move(strip)),
-        samples_(source.heights, window, 0, strip_.triangles.size(), source.loose),
+        samples_(source.heights, window, 0, strip_.triangles.size(), source.loose,
+                 Behind::kNothing),  // chains know the samples that are kept alone
         frame_(source.world, source.lattice, window, seam.first.level),
-        reference_(samples_, frame_, step_m() / frame_.spacing_m(), kMostBehind) {
+        reference_(samples_, frame_, step_m() / frame_.spacing_m()) {
     place_vertices();
     list_chain();
     if (source_.features == nullptr) find_line();
@@ -84,8 +85,6 @@ class SeamBuild {
   // as measured over the strip; over a tile the frame may be off by a little more
   static constexpr double kLargestShare = 0.99;
   static constexpr double kLargestBend_cells = 0.4;
-  // chains know the samples that are kept alone
-  static constexpr std::int64_t kMostBehind = 0;
   static constexpr double kShareOfAltitude = 0.25;
 
   /// At level 0 the triangles beside a long edge of a seam are one cell wide, until their tiles

@@ -142,7 +142,8 @@ Reference::Reference(const TileSamples& samples, const TileFrame& frame, double 
                      std::int64_t most_in_memory) {
   const bool is_reduced = samples.block_cells() > 1;
   const std::int64_t all = samples.window().columns * samples.window().rows;
-  const bool is_backed = is_reduced && !samples.has_loose() && most_in_memory > 0;
+  const bool has_all = samples.behind() == Behind::kAllSamples;
+  const bool is_backed = is_reduced && has_all;
   is_whole_ = !is_reduced || is_backed;
   field_ = {samples.window().columns, samples.window().rows, {}};
   if (is_reduced || samples.has_loose()) {
@@ -154,7 +155,7 @@ Reference::Reference(const TileSamples& samples, const TileFrame& frame, double 
     field_.heights_m = all_heights_m(samples, frame);
   }
   const bool has_many = samples.samples_per_triangle() > kManySamples;
-  if (has_many && field_.has_grid()) field_.slabs = field_.slabs_of_grid(kSideOfSlabs);
+  if (has_all && has_many && field_.has_grid()) field_.slabs = field_.slabs_of_grid(kSideOfSlabs);
   field_.slack_cells = slack_cells;
 }
 

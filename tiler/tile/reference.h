@@ -21,7 +21,7 @@ class Reference {
  public:
   /// \param slack_cells     see SampleField.
   /// \param most_in_memory  samples that stay behind those kept, two bytes each; of a tile with
-  ///                        more, their slabs do. With 0, or loose ones, nothing is behind.
+  ///                        more, their slabs do. None do if the samples say so (Behind).
   Reference(const TileSamples& samples, const TileFrame& frame, double slack_cells,
             std::int64_t most_in_memory = kMostInMemory);
 

@@ -54,9 +54,9 @@ TileSamples::TileSamples(const HeightSource& heights, const Window& window, std:
       window_(window),
       margin_(margin),
       input_triangles_(input_triangles),
-      block_cells_(fitting_block_cells(
-          window, input_triangles,
-          behind == Behind::kAllSamples && loose == nullptr ? kBacked : kAlone)) {
+      behind_(loose == nullptr ? behind : Behind::kNothing),
+      block_cells_(fitting_block_cells(window, input_triangles,
+                                       behind_ == Behind::kAllSamples ? kBacked : kAlone)) {
   const std::int64_t trend_cells = kBlocksPerTrend * block_cells_;
   patch_columns_ = window_.columns;
   patch_rows_ = window_.rows;

@@ -51,6 +51,8 @@ class TileSamples {
   double samples_per_triangle() const;
 
   bool has_loose() const { return loose_ != nullptr; }
+  /// What is to be behind the reference; nothing where there are loose samples.
+  Behind behind() const { return behind_; }
 
   /// The loose samples of a patch, and of \p margin cells around it; columns and rows count from
   /// the tile's first sample.
@@ -75,6 +77,7 @@ class TileSamples {
   Window window_;
   std::int64_t margin_;
   std::size_t input_triangles_;
+  Behind behind_;
   std::int64_t block_cells_;
   std::int64_t patch_columns_ = 0, patch_rows_ = 0, patches_along_row_ = 0;
   std::vector<Window> patches_;

@@ -31,7 +31,8 @@ class ReducedReference : public ::testing::Test {
   Lattice lattice_{std::vector<Eigen::Vector3d>{{0.01, 0.01, 0.01}}};
   TileFrame frame_{world_, lattice_, window_, 0};
   TileSamples samples_{dem_, window_, 0, 100};
-  Reference reference_{samples_, frame_, 1e-7, 0};
+  Reference reference_{samples_, frame_, 1e-7};
+  TileSamples backed_samples_{dem_, window_, 0, 100, nullptr, Behind::kAllSamples};
 
   bool holds(float column, float row) const {
     return std::ranges::any_of(reference_.field().kept, [&](const auto& sample) {
@@ -64,18 +65,18 @@ TEST_F(ReducedReference, LearnsASampleOnce) {
 }
 
 TEST_F(ReducedReference, WhatItLeavesOutStaysBehindItIfMemoryAllows) {
-  const Reference backed(samples_, frame_, 1e-7);
+  const Reference backed(backed_samples_, frame_, 1e-7);
   EXPECT_FALSE(reference_.is_whole());
   EXPECT_FALSE(reference_.field().is_backed());
   ASSERT_TRUE(backed.field().is_backed());
   EXPECT_TRUE(backed.is_whole());
-  EXPECT_EQ(backed.field().kept.size(), reference_.field().kept.size());
+  EXPECT_LT(backed.field().kept.size(), reference_.field().kept.size());
   EXPECT_NEAR(backed.field().behind.row(1000, 777)[0], slope_with_spikes(1000, 777),
               backed.field().behind.rounding_m() + 1e-3);
 }
 
 TEST_F(ReducedReference, WhatItsMemoryDoesNotAllowIsThereAsSlabs) {
-  const Reference backed(samples_, frame_, 1e-7, 1000);
+  const Reference backed(backed_samples_, frame_, 1e-7, 1000);
   EXPECT_TRUE(backed.is_whole());
   EXPECT_TRUE(backed.field().behind.empty());
   const hierarchy::HeightSlabs& slabs = backed.field().slabs;
