@@ -14,6 +14,9 @@ namespace terrane::hierarchy {
 /// lowest and the highest.
 class CodedHeights {
  public:
+  /// The code of a sample without a height.
+  static constexpr std::uint16_t kNone = 0xFFFF;
+
   /// A row of them, from some column on.
   struct Row {
     const std::uint16_t* codes;
@@ -49,7 +52,6 @@ class CodedHeights {
   }
 
  private:
-  static constexpr std::uint16_t kNone = 0xFFFF;
   static constexpr double kLeastRange_m = 1e-3;
 
   std::size_t number(std::int64_t column, std::int64_t row) const {

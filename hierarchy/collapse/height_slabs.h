@@ -39,6 +39,8 @@ class HeightSlabs {
 
   bool empty() const { return slabs_.empty(); }
   std::int64_t side() const { return side_; }
+  /// Counted in blocks.
+  GridShape shape() const { return {columns_, std::ssize(slabs_) / columns_}; }
   /// Of the block of so many blocks to the right and down.
   HeightSlab& at(std::int64_t column, std::int64_t row) { return slabs_[number(column, row)]; }
   const HeightSlab& at(std::int64_t column, std::int64_t row) const {

@@ -18,6 +18,10 @@ using Lanes [[gnu::vector_size(4 * kLanes)]] = float;
 /// All bits set in the lanes for which something holds.
 using LaneMask [[gnu::vector_size(4 * kLanes)]] = std::int32_t;
 
+/// Half as many doubles: as wide.
+using HalfLanes [[gnu::vector_size(4 * kLanes)]] = double;
+using HalfMask [[gnu::vector_size(4 * kLanes)]] = std::int64_t;
+
 #define TERRANE_LANES_INLINE [[gnu::always_inline]] inline
 
 #if defined(__x86_64__)
@@ -44,6 +48,19 @@ TERRANE_LANES_INLINE Lanes lane_numbers() { return Lanes{0, 1, 2, 3, 4, 5, 6, 7}
 TERRANE_LANES_INLINE Lanes max(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
 TERRANE_LANES_INLINE Lanes min(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
 TERRANE_LANES_INLINE Lanes abs(const Lanes& a) { return max(a, -a); }
+
+using HalfIntegers [[gnu::vector_size(2 * kLanes)]] = std::int32_t;
+/// Lanes of integers or masks: the first four, or the others.
+TERRANE_LANES_INLINE HalfIntegers half_of(const LaneMask& lanes, std::size_t half) {
+  return half == 0 ? __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3)
+                   : __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+}
+TERRANE_LANES_INLINE HalfLanes as_doubles(const LaneMask& integers, std::size_t half) {
+  return __builtin_convertvector(half_of(integers, half), HalfLanes);
+}
+TERRANE_LANES_INLINE HalfMask widened(const LaneMask& mask, std::size_t half) {
+  return __builtin_convertvector(half_of(mask, half), HalfMask);
+}
 
 TERRANE_LANES_INLINE bool any(const LaneMask& mask) {
   using Halves [[gnu::vector_size(4 * kLanes)]] = std::int64_t;

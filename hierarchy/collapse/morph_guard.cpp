@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <optional>
 
-#include "hierarchy/collapse/moving_triangle.h"
 #include "hierarchy/collapse/within_task.h"
 
 namespace terrane::hierarchy {
@@ -84,7 +85,8 @@ MorphGuard::MorphGuard(std::vector<Place> finer, std::vector<Corners> triangles,
       incident_(triangles_.size() * 3),
       has_large_triangles_(field.sample_count() > kManySamples * triangles_.size()),
       checked_(triangles_.size(), 0),
-      refused_(triangles_.size(), 0) {
+      refused_(triangles_.size(), 0),
+      left_(triangles_.size(), {0, 0, std::numeric_limits<double>::quiet_NaN()}) {
   for (std::uint32_t v = 0; v < finer_.size(); ++v) {
     target_[v] = VertexId{v};
     next_member_[v] = v;
@@ -117,41 +119,58 @@ bool MorphGuard::is_upright(const std::array<Place, 6>& places) const {
   return keeps_orientation(seen, least_altitude_);
 }
 
-bool MorphGuard::is_sound(const Corners& triangle, std::span<const VertexId> core,
-                          const Place& target) const {
+bool MorphGuard::refuses_at_a_look(std::uint32_t triangle, std::span<const VertexId> core,
+                                   const Place& target) {
   std::array<Place, 6> places;
   std::array<FieldPoint, 3> begin, end;
   for (std::size_t k = 0; k < 3; ++k) {
-    const VertexId coarse = target_[triangle[k]];
-    places[k] = finer_[triangle[k]];
+    const std::uint32_t fine = triangles_[triangle][k];
+    const VertexId coarse = target_[fine];
+    places[k] = finer_[fine];
     places[3 + k] =
         std::ranges::find(core, coarse) != core.end() ? target : coarser_[index(coarse)].place;
     begin[k] = field_point(places[k]);
     end[k] = field_point(places[3 + k]);
   }
-  return is_upright(places) &&
-         MovingTriangle(begin, end, field_.slack_cells).stays_within(field_, tolerance_m_);
+  if (!is_upright(places)) return true;
+  movements_.push_back({triangle, MovingTriangle(begin, end, field_.slack_cells)});
+  const FieldSample& left = left_[triangle];
+  return !std::isnan(left.height_m) && movements_.back().moving.surely_leaves(left, tolerance_m_);
+}
+
+bool MorphGuard::do_all_stay_within() {
+  constexpr std::size_t kNone = ~std::size_t{0};
+  std::atomic<std::size_t> refusing = kNone;
+  const auto look_at = [&](std::size_t i) {
+    if (refusing.load(std::memory_order_relaxed) != kNone) return;
+    const auto& [triangle, moving] = movements_[i];
+    const std::optional<FieldSample> left = moving.find_left(field_, tolerance_m_);
+    if (!left) return;
+    left_[triangle] = *left;
+    refusing = i;
+  };
+  if (has_large_triangles_) {
+    for_each_within_task(movements_.size(), look_at);
+  } else {
+    for (std::size_t i = 0; i < movements_.size(); ++i) look_at(i);
+  }
+  if (refusing == kNone) return true;
+  refused_[movements_[refusing].triangle] = stamp_;
+  return false;
 }
 
 bool MorphGuard::allows(std::span<const VertexId> core, const Place& target) {
   list_moved(core);
-  // what refused a place is likely to refuse the next one, too
+  // what refused a place is likely to refuse the next one, too, for the sake of the same sample
   std::ranges::sort(moved_, std::ranges::greater(),
                     [&](std::uint32_t t) { return std::pair(refused_[t], t); });
-  constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  std::atomic<std::uint32_t> refusing = kNone;
-  const auto look_at = [&](std::size_t i) {
-    if (refusing.load(std::memory_order_relaxed) != kNone) return;
-    if (!is_sound(triangles_[moved_[i]], core, target)) refusing = moved_[i];
-  };
-  if (has_large_triangles_) {
-    for_each_within_task(moved_.size(), look_at);
-  } else {
-    for (std::size_t i = 0; i < moved_.size(); ++i) look_at(i);
+  movements_.clear();
+  for (const std::uint32_t triangle : moved_) {
+    if (!refuses_at_a_look(triangle, core, target)) continue;
+    refused_[triangle] = stamp_;
+    return false;
   }
-  if (refusing == kNone) return true;
-  refused_[refusing] = stamp_;
-  return false;
+  return do_all_stay_within();
 }
 
 /// The fine triangles at the fine vertices of a core, each once.

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "hierarchy/collapse/height_slabs.h"
+#include "hierarchy/collapse/moving_triangle.h"
 #include "hierarchy/collapse/sample_field.h"
 #include "hierarchy/collapse/terrain_mesh.h"
 #include "hierarchy/mesh/ids.h"
@@ -43,8 +43,16 @@ class MorphGuard {
   VertexId target_of(std::uint32_t fine) const { return target_[fine]; }
 
  private:
+  /// A fine triangle on its way, were the place taken.
+  struct Movement {
+    std::uint32_t triangle;
+    MovingTriangle moving;
+  };
+
   void list_moved(std::span<const VertexId> core);
-  bool is_sound(const Corners& triangle, std::span<const VertexId> core, const Place& target) const;
+  bool refuses_at_a_look(std::uint32_t triangle, std::span<const VertexId> core,
+                         const Place& target);
+  bool do_all_stay_within();
   bool is_upright(const std::array<Place, 6>& places) const;
 
   std::vector<Place> finer_;
@@ -59,7 +67,9 @@ class MorphGuard {
   std::vector<std::uint32_t> first_incident_, incident_;
   bool has_large_triangles_;
   std::vector<std::uint32_t> checked_, moved_;
+  std::vector<Movement> movements_;
   std::vector<std::uint32_t> refused_;  // stamp when a fine triangle last refused a place, or 0
+  std::vector<FieldSample> left_;       // for the sake of that sample, if it has a height
   std::uint32_t stamp_ = 0;
 };
 

@@ -1,14 +1,16 @@
 // A moving triangle and all samples of a field.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "hierarchy/collapse/bernstein.h"
+#include "hierarchy/collapse/coded_lanes.h"
 #include "hierarchy/collapse/halfway_plane.h"
 #include "hierarchy/collapse/height_slabs.h"
 #include "hierarchy/collapse/lanes.h"
 #include "hierarchy/collapse/moving_triangle.h"
-#include "hierarchy/collapse/slab_rows.h"
+#include "hierarchy/collapse/slab_parts.h"
 
 namespace terrane::hierarchy {
 namespace {
@@ -30,6 +32,25 @@ struct SlabRow {
   double operator[](std::size_t k) const { return first_m + static_cast<double>(k) * per_column_m; }
 };
 
+/// Eight heights of a row, counted from some height.
+template <class Heights>
+TERRANE_LANES_INLINE Lanes lanes_of(const Heights& heights_m, std::size_t first, double origin_m) {
+  Lanes result{};
+  for (std::size_t k = 0; k < kLanes; ++k) {
+    result[k] = static_cast<float>(heights_m[first + k] - origin_m);
+  }
+  return result;
+}
+
+TERRANE_LANES_INLINE Lanes lanes_of(const CodedHeights::Row& heights, std::size_t first,
+                                    double origin_m) {
+  const auto [low_m, high_m] = lanes_of(heights, first);
+  using HalfFloats [[gnu::vector_size(2 * kLanes)]] = float;
+  return __builtin_shufflevector(__builtin_convertvector(low_m - origin_m, HalfFloats),
+                                 __builtin_convertvector(high_m - origin_m, HalfFloats), 0, 1, 2, 3,
+                                 4, 5, 6, 7);
+}
+
 }  // namespace
 
 /// Goes through samples, eight at once in single precision. What that cannot clear of all doubt is
@@ -37,8 +58,13 @@ struct SlabRow {
 class MovingTriangle::Sweep {
  public:
   /// \param margin_cells  how far beside the triangle there may be samples and corners of slabs.
-  Sweep(const MovingTriangle& triangle, double tolerance_m, double margin_cells)
-      : triangle_(triangle), tolerance_m_(tolerance_m), meeting_(triangle.meeting_corners()) {
+  /// \param left  set to the sample that the triangle is found to leave.
+  Sweep(const MovingTriangle& triangle, double tolerance_m, double margin_cells,
+        std::optional<FieldSample>& left)
+      : triangle_(triangle),
+        tolerance_m_(tolerance_m),
+        left_(left),
+        meeting_(triangle.meeting_corners()) {
     double reach = 0, relief_m = tolerance_m;
     const FieldPoint& origin = triangle.from_[0];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -47,8 +73,8 @@ class MovingTriangle::Sweep {
             std::max({reach, std::abs(p->column - origin.column), std::abs(p->row - origin.row)});
         relief_m = std::max(relief_m, std::abs(p->height_m - origin.height_m));
       }
-      first_m_[k] = static_cast<float>(triangle.from_[k].height_m - origin.height_m);
-      last_m_[k] = static_cast<float>(triangle.to_[k].height_m - origin.height_m);
+      limits_.begin_m[k] = static_cast<float>(triangle.from_[k].height_m - origin.height_m);
+      limits_.end_m[k] = static_cast<float>(triangle.to_[k].height_m - origin.height_m);
       for (std::size_t i = 0; i < 3; ++i) {
         constant_[k][i] = static_cast<float>(triangle.areas_[k][i].constant);
         per_column_[k][i] = static_cast<float>(triangle.areas_[k][i].per_column);
@@ -66,13 +92,17 @@ class MovingTriangle::Sweep {
       limits_.outside[i] =
           static_cast<float>(-triangle.slack_ * std::max(0.0, whole[i]) - area_doubt);
     }
+    // samples may lie beside the triangle, by at most the slack on two sides
+    const double beside_m = 2 * triangle.slack_ * (triangle.highest_m_ - triangle.lowest_m_);
+    near_m_ = static_cast<float>(tolerance_m - beside_m - kDoubt * (relief_m + tolerance_m));
+    least_near_m_ = static_cast<float>(triangle.highest_m_ - origin.height_m) - near_m_;
+    most_near_m_ = static_cast<float>(triangle.lowest_m_ - origin.height_m) + near_m_;
     highest_m_ = static_cast<float>(2 * (relief_m + tolerance_m));
     const auto& [plane, farthest_m] = HalfwayPlane(triangle.from_, triangle.to_);
     halfway_m_ = static_cast<float>(plane.height_m(origin.column, origin.row) - origin.height_m);
     halfway_per_column_m_ = static_cast<float>(plane.per_column_m());
     halfway_per_row_m_ = static_cast<float>(plane.per_row_m());
     const double rise_m = std::abs(plane.per_column_m()) + std::abs(plane.per_row_m());
-    // samples may lie beside the triangle, by at most the slack on two sides
     halfway_room_m_ =
         static_cast<float>(tolerance_m - farthest_m * (1 + 4 * triangle.slack_) -
                            kDoubt * (relief_m + tolerance_m + rise_m * (reach + margin_cells)));
@@ -95,9 +125,9 @@ class MovingTriangle::Sweep {
   }
 
   /// Is the triangle within the tolerance of all that the slab of a block can hold?
-  /// \param column, row  any sample of the block.
-  bool is_clear_of(const HeightSlabs& slabs, std::int64_t column, std::int64_t row) const {
-    const std::int64_t side = slabs.side(), right = column / side, down = row / side;
+  /// \param right, down  blocks from the first one.
+  bool is_clear_of(const HeightSlabs& slabs, std::int64_t right, std::int64_t down) const {
+    const std::int64_t side = slabs.side();
     const HeightSlab& slab = slabs.at(right, down);
     if (slab.is_empty()) return true;
     const FieldPoint& origin = triangle_.from_[0];
@@ -115,37 +145,58 @@ class MovingTriangle::Sweep {
  private:
   /// What samples are held against over some part of the time.
   struct Limits {
-    std::array<float, 4> room;     // more off than that may be over the tolerance
-    std::array<float, 3> outside;  // an area less than that is surely outside
+    std::array<float, 4> room;            // more off than that may be over the tolerance
+    std::array<float, 3> outside;         // an area less than that is surely outside
+    std::array<float, 3> begin_m, end_m;  // heights of the corners
+
+    TERRANE_LANES_INLINE Limits split_off_first() {
+      Limits first;
+      first.room = split(room);
+      first.outside = split(outside);
+      for (std::size_t k = 0; k < 3; ++k) {
+        first.begin_m[k] = begin_m[k];
+        first.end_m[k] = begin_m[k] = (begin_m[k] + end_m[k]) * 0.5F;
+      }
+      return first;
+    }
   };
 
-  /// Eight samples over some part of the time; all in Bernstein form.
+  /// Eight samples over some part of the time; polynomials in Bernstein form.
   struct Passages {
+    Limits limits;
     std::array<std::array<Lanes, 3>, 3> inside;
     std::array<Lanes, 4> off;
+    LaneMask near_begin, near_end;  // of the samples that are near all corners at an end
+    LaneMask known;                 // of those that need no look
+    int splits;                     // that may still be made
 
-    TERRANE_LANES_INLINE LaneMask are_outside(const Limits& limits) const {
-      LaneMask outside{};
-      for (const std::array<Lanes, 3>& area : inside) {
-        outside |= (area[0] < limits.outside[0]) & (area[1] < limits.outside[1]) &
-                   (area[2] < limits.outside[2]);
-      }
-      return outside;
+    TERRANE_LANES_INLINE Passages split_off_first(const Lanes& height_m, float near_m) {
+      Passages first;
+      first.limits = limits.split_off_first();
+      for (std::size_t k = 0; k < 3; ++k) first.inside[k] = split(inside[k]);
+      first.off = split(off);
+      first.near_begin = near_begin;
+      first.near_end = near_begin = are_near(height_m, limits.begin_m, near_m);
+      first.known = known;
+      first.splits = --splits;
+      return first;
+    }
+    /// What lies between corners that are near is so, too.
+    TERRANE_LANES_INLINE LaneMask are_near_corners() const { return near_begin & near_end; }
+    TERRANE_LANES_INLINE LaneMask are_outside_of(std::size_t k) const {
+      return (inside[k][0] < limits.outside[0]) & (inside[k][1] < limits.outside[1]) &
+             (inside[k][2] < limits.outside[2]);
+    }
+    TERRANE_LANES_INLINE LaneMask are_outside() const {
+      return are_outside_of(0) | are_outside_of(1) | are_outside_of(2);
     }
     /// Are all eight on the outer side of one edge?
-    TERRANE_LANES_INLINE bool are_beside(const Limits& limits) const {
-      for (const std::array<Lanes, 3>& area : inside) {
-        if (!any(~((area[0] < limits.outside[0]) & (area[1] < limits.outside[1]) &
-                   (area[2] < limits.outside[2])))) {
-          return true;
-        }
-      }
-      return false;
+    TERRANE_LANES_INLINE bool are_beside() const {
+      return !any(~are_outside_of(0)) || !any(~are_outside_of(1)) || !any(~are_outside_of(2));
     }
-    TERRANE_LANES_INLINE LaneMask have_room(const Limits& limits) const {
-      LaneMask room = ~LaneMask{};
-      for (std::size_t i = 0; i < 4; ++i) room &= abs(off[i]) <= limits.room[i];
-      return room;
+    TERRANE_LANES_INLINE LaneMask have_room() const {
+      return (abs(off[0]) <= limits.room[0]) & (abs(off[1]) <= limits.room[1]) &
+             (abs(off[2]) <= limits.room[2]) & (abs(off[3]) <= limits.room[3]);
     }
   };
 
@@ -167,13 +218,8 @@ class MovingTriangle::Sweep {
               all_heights_m[k]};
     }
     TERRANE_LANES_INLINE Lanes heights_m(std::size_t first) const {
+      if (first + kLanes <= count) return lanes_of(all_heights_m, first, origin.height_m);
       Lanes result{};
-      if (first + kLanes <= count) {
-        for (std::size_t k = 0; k < kLanes; ++k) {
-          result[k] = static_cast<float>(all_heights_m[first + k] - origin.height_m);
-        }
-        return result;
-      }
       for (std::size_t k = 0; k < kLanes; ++k) {
         const std::size_t at = std::min(first + k, count - 1);
         result[k] = static_cast<float>(all_heights_m[at] - origin.height_m);
@@ -231,12 +277,15 @@ class MovingTriangle::Sweep {
         const Eight eight = samples.eight(first, samples.heights_m(first));
         const Lanes& height_m = eight.height_m;
         // samples without data are as good as cleared
-        const LaneMask is_known = (height_m != height_m) | sweep.are_near_halfway_plane(eight);
+        const LaneMask is_known = (height_m != height_m) | sweep.are_cleared_at_a_look(eight);
         if (!any(~is_known)) continue;
-        const LaneMask is_cleared =
-            is_known | ((abs(height_m) <= sweep.highest_m_) &
-                        are_sound<kSplitsAtOnce>(sweep.passages(eight), sweep.limits_, is_known));
-        if (any(~is_cleared)) return {first, bits_of(~is_cleared)};
+        const LaneMask too_far = ~(is_known | (abs(height_m) <= sweep.highest_m_));
+        const auto undecided = [](const Passages& passages) __attribute__((always_inline)) {
+          return ~(passages.are_near_corners() | passages.have_room() | passages.are_outside());
+        };
+        const LaneMask in_doubt =
+            too_far | sweep.in_doubt<kSplitsAtOnce>(eight, is_known | too_far, undecided);
+        if (any(in_doubt)) return {first, bits_of(in_doubt)};
       }
       return {samples.count, 0};
     }
@@ -253,8 +302,13 @@ class MovingTriangle::Sweep {
     TERRANE_LANES_INLINE bool run() const {
       const Eight corners = eight();
       if (!any(~sweep.are_near_halfway_plane(corners))) return true;
-      return !any(~(abs(corners.height_m) <= sweep.highest_m_)) &&
-             are_clear<kSplitsOfSlab>(sweep.passages(corners), sweep.limits_);
+      if (any(~(abs(corners.height_m) <= sweep.highest_m_))) return false;
+      const auto undecided = [](const Passages& passages) __attribute__((always_inline)) {
+        const bool is_clear = !any(~passages.are_near_corners()) || !any(~passages.have_room()) ||
+                              passages.are_beside();
+        return is_clear ? LaneMask{} : ~LaneMask{};
+      };
+      return !any(sweep.in_doubt<kSplitsOfSlab>(corners, LaneMask{}, undecided));
     }
 
     TERRANE_LANES_INLINE Eight eight() const {
@@ -288,6 +342,7 @@ class MovingTriangle::Sweep {
         if ((doubt.samples >> k & 1) == 0) continue;
         const FieldSample sample = samples[begin + k];
         if (!std::isnan(sample.height_m) && !triangle_.stays_within(sample, tolerance_m_)) {
+          left_ = sample;
           return false;
         }
       }
@@ -307,14 +362,30 @@ class MovingTriangle::Sweep {
     return abs(eight.height_m - plane_m) <= halfway_room_m_;
   }
 
-  TERRANE_LANES_INLINE Passages passages(const Eight& eight) const {
-    Passages all{};
+  TERRANE_LANES_INLINE LaneMask are_cleared_at_a_look(const Eight& eight) const {
+    return are_near_halfway_plane(eight) |
+           ((eight.height_m >= least_near_m_) & (eight.height_m <= most_near_m_));
+  }
+
+  TERRANE_LANES_INLINE static LaneMask are_near(const Lanes& height_m,
+                                                const std::array<float, 3>& corners_m,
+                                                float near_m) {
+    return (abs(height_m - corners_m[0]) <= near_m) & (abs(height_m - corners_m[1]) <= near_m) &
+           (abs(height_m - corners_m[2]) <= near_m);
+  }
+
+  TERRANE_LANES_INLINE void begin(const Eight& eight, Passages& all) const {
+    all.limits = limits_;
     for (std::size_t k = 0; k < 3; ++k) {
-      std::array<Lanes, 3>& area = all.inside[k];
       for (std::size_t i = 0; i < 3; ++i) {
-        area[i] = constant_[k][i] + eight.y * per_row_[k][i] + eight.x * per_column_[k][i];
+        all.inside[k][i] = constant_[k][i] + eight.y * per_row_[k][i] + eight.x * per_column_[k][i];
       }
-      const Lanes first = first_m_[k] - eight.height_m, last = last_m_[k] - eight.height_m;
+    }
+    for (Lanes& off : all.off) off = Lanes{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::array<Lanes, 3>& area = all.inside[k];
+      const Lanes first = limits_.begin_m[k] - eight.height_m;
+      const Lanes last = limits_.end_m[k] - eight.height_m;
       constexpr float kThird = 1.0F / 3;
       all.off[0] += area[0] * first;
       all.off[1] += (area[0] * last + 2.0F * area[1] * first) * kThird;
@@ -322,106 +393,95 @@ class MovingTriangle::Sweep {
       all.off[3] += area[2] * last;
     }
     for (std::size_t i = 4 - vanishing(); i < 4; ++i) all.off[i] = Lanes{};
-    return all;
+    all.near_begin = are_near(eight.height_m, limits_.begin_m, near_m_);
+    all.near_end = are_near(eight.height_m, limits_.end_m, near_m_);
   }
 
-  /// \param known  samples that need no look.
-  template <int kSplits>
-  TERRANE_LANES_INLINE static LaneMask are_sound(const Passages& passages, const Limits& limits,
-                                                 const LaneMask& known) {
-    LaneMask sound = known | passages.have_room(limits) | passages.are_outside(limits);
-    if constexpr (kSplits > 0) {
-      if (!any(~sound)) return sound;
-      const auto [first, second] = halves(passages);
-      const auto [before, after] = halves(limits);
-      const LaneMask at_first = are_sound<kSplits - 1>(first, before, sound);
-      // what fails in the first half is in doubt, whatever comes
-      if (any(at_first & ~sound)) {
-        sound = at_first & are_sound<kSplits - 1>(second, after, sound | ~at_first);
+  /// Splits the time in halves, and those again, for the samples that are undecided in some part.
+  /// \param known      samples that need no look.
+  /// \param undecided  called with the passages of some part; tells which samples are not decided.
+  /// \return those that never are.
+  template <int kSplits, class Undecided>
+  TERRANE_LANES_INLINE LaneMask in_doubt(const Eight& eight, const LaneMask& known,
+                                         const Undecided& undecided) const {
+    std::array<Passages, kSplits + 1> parts;  // the last one comes first
+    begin(eight, parts[0]);
+    parts[0].known = known;
+    parts[0].splits = kSplits;
+    LaneMask in_doubt{};
+    for (std::size_t count = 1; count > 0;) {
+      Passages& part = parts[count - 1];
+      const LaneMask open = undecided(part) & ~(part.known | in_doubt);
+      if (!any(open)) {
+        --count;
+      } else if (part.splits == 0) {
+        in_doubt |= open;
+        --count;
+      } else {
+        part.known = ~open;
+        parts[count++] = part.split_off_first(eight.height_m, near_m_);
       }
     }
-    return sound;
-  }
-
-  template <int kSplits>
-  TERRANE_LANES_INLINE static bool are_clear(const Passages& passages, const Limits& limits) {
-    if (!any(~passages.have_room(limits)) || passages.are_beside(limits)) return true;
-    if constexpr (kSplits > 0) {
-      const auto [first, second] = halves(passages);
-      const auto [before, after] = halves(limits);
-      return are_clear<kSplits - 1>(first, before) && are_clear<kSplits - 1>(second, after);
-    }
-    return false;
-  }
-
-  TERRANE_LANES_INLINE static std::pair<Passages, Passages> halves(const Passages& whole) {
-    Passages first, second = whole;
-    for (std::size_t k = 0; k < 3; ++k) first.inside[k] = split(second.inside[k]);
-    first.off = split(second.off);
-    return {first, second};
-  }
-  TERRANE_LANES_INLINE static std::pair<Limits, Limits> halves(const Limits& whole) {
-    Limits first, second = whole;
-    first.room = split(second.room);
-    first.outside = split(second.outside);
-    return {first, second};
+    return in_doubt;
   }
 
   const MovingTriangle& triangle_;
   double tolerance_m_;
+  std::optional<FieldSample>& left_;
   int meeting_;
-  float constant_[3][3], per_column_[3][3], per_row_[3][3], first_m_[3], last_m_[3];
+  float constant_[3][3], per_column_[3][3], per_row_[3][3];
   Limits limits_;
   float highest_m_;
+  float near_m_;                      // what is so near to a corner is surely within the tolerance
+  float least_near_m_, most_near_m_;  // heights that are so near to all corners
   // HalfwayPlane from the first corner on, and how far from it is surely near enough
   float halfway_m_, halfway_per_column_m_, halfway_per_row_m_, halfway_room_m_;
 };
 
 /// All samples under some hull; where there are slabs, those that they do not clear.
-bool MovingTriangle::stays_within_all(std::span<const FieldPoint> hull, const SampleField& field,
-                                      double tolerance_m) const {
-  const auto for_each_row = [&](const auto& visit) {
-    return for_each_span_of_hull(hull, {field.columns, field.rows}, field.slack_cells, visit);
-  };
+std::optional<FieldSample> MovingTriangle::find_left_of_all(std::span<const FieldPoint> hull,
+                                                            const SampleField& field,
+                                                            double tolerance_m) const {
+  const GridShape shape{field.columns, field.rows};
   const HeightSlabs& slabs = field.slabs;
   const double beside_cells = slabs.empty() ? 0 : static_cast<double>(slabs.side());
-  const Sweep sweep(*this, tolerance_m, kMargin + beside_cells);
+  std::optional<FieldSample> left;
+  const Sweep sweep(*this, tolerance_m, kMargin + beside_cells, left);
   if (slabs.empty()) {
-    return for_each_row([&](std::int64_t row, std::int64_t first, std::int64_t last) {
-      return sweep(field, {row, first, last});
-    });
+    for_each_span_of_hull(hull, shape, field.slack_cells,
+                          [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+                            return sweep(field, {row, first, last});
+                          });
+    return left;
   }
-  const auto over_blocks = [&](std::span<const RowSpan> spans) {
-    return for_each_block_of(spans, slabs.side(), [&](std::int64_t first, std::int64_t last) {
-      if (sweep.is_clear_of(slabs, first, spans[0].row)) return true;
-      return for_each_part_of(spans, first, last, [&](const RowSpan& part) {
+  for_each_part_not_clear(
+      HullSides(hull).sides(), shape, field.slack_cells, slabs,
+      [&](std::int64_t column, std::int64_t row) { return sweep.is_clear_of(slabs, column, row); },
+      [&](const RowSpan& part) {
         return field.has_grid() ? sweep(field, part) : sweep(slabs, part);
       });
-    });
-  };
-  SlabRows rows(slabs.side(), over_blocks);
-  return for_each_row([&](std::int64_t row, std::int64_t first, std::int64_t last) {
-           return rows.add(row, first, last);
-         }) &&
-         rows.end();
+  return left;
 }
 
-bool MovingTriangle::stays_within(const SampleField& field, double tolerance_m) const {
+std::optional<FieldSample> MovingTriangle::find_left(const SampleField& field,
+                                                     double tolerance_m) const {
   // a point under the triangle is at any time between two that are under it at the ends
   std::array<FieldPoint, 6> corners{from_[0], from_[1], from_[2]};
   std::size_t count = 3;
   for (std::size_t k = 0; k < 3; ++k) {
     if (from_[k] != to_[k]) corners[count++] = to_[k];
   }
-  if (count == 3) return true;
+  if (count == 3) return std::nullopt;
   const std::span<const FieldPoint> hull = std::span(corners).first(count);
-  if (!field.is_reduced()) return stays_within_all(hull, field, tolerance_m);
+  if (!field.is_reduced()) return find_left_of_all(hull, field, tolerance_m);
   if (!field.behind.empty()) {
-    return stays_within_all(hull, field, tolerance_m - field.behind.rounding_m());
+    return find_left_of_all(hull, field, tolerance_m - field.behind.rounding_m());
   }
-  if (field.is_backed()) return stays_within_all(hull, field, tolerance_m);
-  return for_each_kept_run_of_hull(hull, field, field.slack_cells,
-                                   Sweep(*this, tolerance_m, kMargin));
+  if (field.is_backed()) return find_left_of_all(hull, field, tolerance_m);
+  std::optional<FieldSample> left;
+  for_each_kept_run_of_hull(hull, field, field.slack_cells,
+                            Sweep(*this, tolerance_m, kMargin, left));
+  return left;
 }
 
 }  // namespace terrane::hierarchy

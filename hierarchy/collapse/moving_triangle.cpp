@@ -99,7 +99,8 @@ bool MovingTriangle::is_near_all_corners(double height_m, double tolerance_m) co
   return height_m >= highest_m_ - tolerance_m && height_m <= lowest_m_ + tolerance_m;
 }
 
-bool MovingTriangle::stays_within(const FieldSample& sample, double tolerance_m) const {
+bool MovingTriangle::stays_within(const FieldSample& sample, double tolerance_m,
+                                  double slack) const {
   if (is_near_all_corners(sample.height_m, tolerance_m)) return true;
   const double column = sample.column - from_[0].column, row = sample.row - from_[0].row;
   Passage passage{.inside = {},
@@ -117,7 +118,7 @@ bool MovingTriangle::stays_within(const FieldSample& sample, double tolerance_m)
     off[1] += (area[0] * last + 2 * area[1] * first) / 3;
     off[2] += (2 * area[1] * last + area[2] * first) / 3;
     off[3] += area[2] * last;
-    for (std::size_t i = 0; i < 3; ++i) area[i] += slack_ * whole_[i];
+    for (std::size_t i = 0; i < 3; ++i) area[i] += slack * whole_[i];
   }
   if (passage.is_outside()) return true;
   const Cubic whole = elevated(whole_);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "hierarchy/collapse/sample_field.h"
@@ -25,16 +26,31 @@ class MovingTriangle {
   ///
   /// What lasts less than 1 / 1024 of the time, as a sample leaves the triangle or comes under it,
   /// is left to the triangle on the other side of the edge.
-  bool stays_within(const FieldSample& sample, double tolerance_m) const;
+  bool stays_within(const FieldSample& sample, double tolerance_m) const {
+    return stays_within(sample, tolerance_m, slack_);
+  }
 
   /// The same for all samples of a field, those behind it if it is backed.
-  bool stays_within(const SampleField& field, double tolerance_m) const;
+  bool stays_within(const SampleField& field, double tolerance_m) const {
+    return !find_left(field, tolerance_m);
+  }
+
+  /// A sample of a field that it does not stay within the tolerance of, of those behind it if it is
+  /// backed; where there are slabs alone, a height that they let a sample have. None if it stays.
+  std::optional<FieldSample> find_left(const SampleField& field, double tolerance_m) const;
+
+  /// Does it move, and is too far from a sample that is under it, not only nearly so? If the
+  /// sample is of a field, stays_within() does not hold for that then.
+  bool surely_leaves(const FieldSample& sample, double tolerance_m) const {
+    return from_ != to_ && !stays_within(sample, tolerance_m, 0);
+  }
 
  private:
   class Sweep;
 
-  bool stays_within_all(std::span<const FieldPoint> hull, const SampleField& field,
-                        double tolerance_m) const;
+  bool stays_within(const FieldSample& sample, double tolerance_m, double slack) const;
+  std::optional<FieldSample> find_left_of_all(std::span<const FieldPoint> hull,
+                                              const SampleField& field, double tolerance_m) const;
 
   /// Twice the area between the sample and an edge, at times that do not matter here: affine.
   struct Affine {

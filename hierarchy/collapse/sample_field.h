@@ -12,6 +12,7 @@
 #include "core/height_grid.h"
 #include "hierarchy/collapse/coded_heights.h"
 #include "hierarchy/collapse/height_slabs.h"
+#include "hierarchy/collapse/row_spans.h"
 #include "hierarchy/mesh/grid_point.h"
 
 namespace terrane::hierarchy {
@@ -71,90 +72,6 @@ struct SampleField {
     return heights_m.data() + static_cast<std::ptrdiff_t>(r * columns);
   }
 };
-
-/// A corner of a triangle over a SampleField, in cells.
-struct FieldPoint {
-  double column = 0;
-  double row = 0;
-  double height_m = 0;
-
-  bool operator==(const FieldPoint&) const = default;
-};
-
-/// A straight line between two points.
-using FieldSide = std::pair<const FieldPoint*, const FieldPoint*>;
-
-/// A side from top to bottom, so that rows find its columns without a division.
-struct FallingSide {
-  double top, bottom, top_column, bottom_column, per_row;
-
-  explicit FallingSide(const FieldSide& side) {
-    const auto [upper, lower] = side.first->row < side.second->row
-                                    ? std::pair{side.first, side.second}
-                                    : std::pair{side.second, side.first};
-    top = upper->row;
-    bottom = lower->row;
-    top_column = upper->column;
-    bottom_column = lower->column;
-    per_row = bottom > top ? (bottom_column - top_column) / (bottom - top) : 0;
-  }
-  FallingSide() = default;
-};
-
-/// The most sides that for_each_span_between() takes: those of a hull of six points.
-inline constexpr std::size_t kMostSides = 6;
-
-/// Calls visit(row, first_column, last_column) for each row of samples between the leftmost and the
-/// rightmost of some sides that go all around, or nearer to them than \p slack_cells, in columns
-/// and rows. Stops and returns false as soon as visit does.
-template <class Visit>
-bool for_each_span_between(std::span<const FieldSide> sides, const GridShape& shape,
-                           double slack_cells, Visit&& visit) {
-  std::array<FallingSide, kMostSides> memory;
-  const std::span<FallingSide> falling = std::span(memory).first(sides.size());
-  double top = std::numeric_limits<double>::infinity(), bottom = -top;
-  for (std::size_t k = 0; k < sides.size(); ++k) {
-    falling[k] = FallingSide(sides[k]);
-    top = std::min(top, falling[k].top);
-    bottom = std::max(bottom, falling[k].bottom);
-  }
-  const auto first_row =
-      std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(top - slack_cells)));
-  const auto last_row = std::min<std::int64_t>(
-      shape.rows - 1, static_cast<std::int64_t>(std::floor(bottom + slack_cells)));
-
-  for (std::int64_t row = first_row; row <= last_row; ++row) {
-    const double above = static_cast<double>(row) - slack_cells;
-    const double below = static_cast<double>(row) + slack_cells;
-    double left = std::numeric_limits<double>::infinity();
-    double right = -left;
-    for (const FallingSide& side : falling) {
-      // the part of the side between the lines above and below the row
-      if (side.bottom < above || side.top > below) continue;
-      const double at_top =
-          above <= side.top ? side.top_column : side.top_column + (above - side.top) * side.per_row;
-      const double at_bottom = below >= side.bottom
-                                   ? side.bottom_column
-                                   : side.top_column + (below - side.top) * side.per_row;
-      left = std::min({left, at_top, at_bottom});
-      right = std::max({right, at_top, at_bottom});
-    }
-    const auto first =
-        std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(left - slack_cells)));
-    const auto last = std::min<std::int64_t>(
-        shape.columns - 1, static_cast<std::int64_t>(std::floor(right + slack_cells)));
-    if (first <= last && !visit(row, first, last)) return false;
-  }
-  return true;
-}
-
-/// The same for the samples under a triangle.
-template <class Visit>
-bool for_each_span(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
-                   const GridShape& shape, double slack_cells, Visit&& visit) {
-  const FieldSide sides[] = {{&a, &b}, {&b, &c}, {&c, &a}};
-  return for_each_span_between(sides, shape, slack_cells, visit);
-}
 
 /// A point counted in blocks of a reduced field, from the middle of the first.
 inline FieldPoint in_blocks(const FieldPoint& p, const SampleField& field) {
@@ -225,73 +142,6 @@ bool for_each_sample(const FieldPoint& a, const FieldPoint& b, const FieldPoint&
         }
         return true;
       });
-}
-
-/// The sides of the convex hull of 3 to 6 points.
-class HullSides {
- public:
-  explicit HullSides(std::span<const FieldPoint> points) {
-    std::array<const FieldPoint*, kMostSides> memory{};
-    const auto sorted = std::span(memory).first(points.size());
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(k);
-      *end = &points[k];
-      std::rotate(std::upper_bound(sorted.begin(), end, *end, is_left_of), end, end + 1);
-    }
-    add_half(sorted);
-    std::ranges::reverse(sorted);
-    add_half(sorted);
-  }
-  std::span<const FieldSide> sides() const { return std::span(sides_).first(count_); }
-
- private:
-  /// From the first point to the last on one side of all others (Andrew's monotone chain).
-  void add_half(std::span<const FieldPoint* const> sorted) {
-    const std::size_t first = count_;
-    const FieldPoint* from = sorted[0];
-    for (const FieldPoint* to : sorted.subspan(1)) {
-      while (count_ > first && !turns_left(sides_[count_ - 1], *to)) from = sides_[--count_].first;
-      sides_[count_++] = {from, to};
-      from = to;
-    }
-  }
-  static bool is_left_of(const FieldPoint* a, const FieldPoint* b) {
-    return a->column < b->column || (a->column == b->column && a->row < b->row);
-  }
-  static bool turns_left(const FieldSide& side, const FieldPoint& to) {
-    const auto& [p, q] = side;
-    return (q->column - p->column) * (to.row - p->row) -
-               (q->row - p->row) * (to.column - p->column) >
-           0;
-  }
-
-  std::array<FieldSide, kMostSides> sides_;
-  std::size_t count_ = 0;
-};
-
-/// As for_each_span(), for the convex hull of 3 to 6 points; if that is small, for its box.
-template <class Visit>
-bool for_each_span_of_hull(std::span<const FieldPoint> points, const GridShape& shape,
-                           double slack_cells, Visit&& visit) {
-  // columns that cost less than to find out which of them to leave out
-  constexpr double kFewColumns = 8;
-  const auto [left, right] = std::ranges::minmax(points, {}, &FieldPoint::column);
-  if (right.column - left.column >= kFewColumns) {
-    return for_each_span_between(HullSides(points).sides(), shape, slack_cells, visit);
-  }
-  const auto [top, bottom] = std::ranges::minmax(points, {}, &FieldPoint::row);
-  const auto from = [&](double at) {
-    return std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(at - slack_cells)));
-  };
-  const auto to = [&](double at, std::int64_t count) {
-    return std::min(count - 1, static_cast<std::int64_t>(std::floor(at + slack_cells)));
-  };
-  const std::int64_t first = from(left.column), last = to(right.column, shape.columns);
-  if (first > last) return true;
-  for (std::int64_t row = from(top.row); row <= to(bottom.row, shape.rows); ++row) {
-    if (!visit(row, first, last)) return false;
-  }
-  return true;
 }
 
 /// Calls visit(samples) for runs of those samples of a reduced field that may lie in the convex

@@ -1,10 +1,13 @@
 #include "hierarchy/collapse/star_error.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "hierarchy/collapse/coded_lanes.h"
 #include "hierarchy/collapse/field_plane.h"
 #include "hierarchy/collapse/lanes.h"
-#include "hierarchy/collapse/slab_rows.h"
+#include "hierarchy/collapse/slab_parts.h"
 
 namespace terrane::hierarchy {
 namespace {
@@ -21,23 +24,27 @@ struct RowPart {
 
   /// The largest distance; samples without data have none.
   TERRANE_LANES_INLINE double run() const {
-    constexpr std::int64_t kAtOnce = 8;
-    double most_m[kAtOnce] = {};
+    constexpr std::int64_t kAtOnce = kLanes;
+    std::array<HalfLanes, 2> most_m{}, at{HalfLanes{0, 1, 2, 3}, HalfLanes{4, 5, 6, 7}};
     std::int64_t k = 0;
     for (; k + kAtOnce <= count; k += kAtOnce) {
-      for (std::int64_t i = 0; i < kAtOnce; ++i) {
-        const double off_m = std::abs(first_m + static_cast<double>(k + i) * per_column_m -
-                                      heights_m[static_cast<std::size_t>(k + i)]);
-        most_m[i] = off_m > most_m[i] ? off_m : most_m[i];
+      const auto eight_m = lanes_of(heights_m, static_cast<std::size_t>(k));
+      for (std::size_t half = 0; half < 2; ++half) {
+        const HalfLanes above_m = first_m + at[half] * per_column_m - eight_m[half];
+        const HalfLanes off_m = above_m < 0 ? -above_m : above_m;
+        most_m[half] = off_m > most_m[half] ? off_m : most_m[half];
+        at[half] += static_cast<double>(kAtOnce);
       }
     }
-    for (std::int64_t i = 0; k < count; ++k, ++i) {
+    double result = 0;
+    for (const HalfLanes& of_half : most_m) {
+      for (std::size_t i = 0; i < kLanes / 2; ++i) result = std::max(result, of_half[i]);
+    }
+    for (; k < count; ++k) {
       const double off_m = std::abs(first_m + static_cast<double>(k) * per_column_m -
                                     heights_m[static_cast<std::size_t>(k)]);
-      most_m[i] = off_m > most_m[i] ? off_m : most_m[i];
+      result = off_m > result ? off_m : result;
     }
-    double result = 0;
-    for (const double off_m : most_m) result = off_m > result ? off_m : result;
     return result;
   }
 
@@ -56,18 +63,29 @@ struct RowPart {
 /// A triangle of a star.
 class Sector {
  public:
-  Sector(const Place& a, const Place& b, const Place& c)
-      : a_(field_point(a)), b_(field_point(b)), c_(field_point(c)), plane_(a_, b_, c_) {}
+  /// \param slack_cells  samples so far beside it count as under it.
+  Sector(const Place& a, const Place& b, const Place& c, double slack_cells)
+      : corners_{field_point(a), field_point(b), field_point(c)},
+        plane_(corners_[0], corners_[1], corners_[2]) {
+    const auto [lowest, highest] = std::ranges::minmax(corners_, {}, &FieldPoint::height_m);
+    const double beside_m =
+        slack_cells * (std::abs(plane_.per_column_m()) + std::abs(plane_.per_row_m()));
+    lowest_m_ = lowest.height_m - beside_m;
+    highest_m_ = highest.height_m + beside_m;
+  }
 
   const FieldPlane& plane() const { return plane_; }
-  template <class Visit>
-  void for_each_span_of(const SampleField& field, const Visit& visit) const {
-    for_each_span(a_, b_, c_, {field.columns, field.rows}, field.slack_cells, visit);
+  double lowest_m() const { return lowest_m_; }
+  double highest_m() const { return highest_m_; }
+  std::array<FieldSide, 3> sides() const {
+    const auto& [a, b, c] = corners_;
+    return {FieldSide{&a, &b}, {&b, &c}, {&c, &a}};
   }
 
  private:
-  FieldPoint a_, b_, c_;
+  std::array<FieldPoint, 3> corners_;
   FieldPlane plane_;
+  double lowest_m_, highest_m_;
 };
 
 void raise_by_row(const Sector& sector, const CodedHeights& heights, const RowSpan& span,
@@ -85,28 +103,35 @@ void raise_by_row(const Sector& sector, const CodedHeights& heights, const RowSp
 }
 
 void raise_by_rows(const Sector& sector, const SampleField& field, StarError& error) {
-  sector.for_each_span_of(field, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-    raise_by_row(sector, field.behind, {row, first, last}, error);
-    return true;
-  });
+  for_each_span_between(sector.sides(), {field.columns, field.rows}, field.slack_cells,
+                        [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+                          raise_by_row(sector, field.behind, {row, first, last}, error);
+                          return true;
+                        });
 }
 
-/// The farthest that the triangle's plane can be from a sample of the block that some sample is in.
+/// The farthest that the triangle can be from a sample of a block: its plane, or if that is less
+/// its corners.
 double most_of_block_m(const Sector& sector, const HeightSlabs& slabs, std::int64_t column,
                        std::int64_t row) {
-  const std::int64_t side = slabs.side(), left = column / side * side, top = row / side * side;
-  const HeightSlab& slab = slabs.at(column / side, row / side);
+  const std::int64_t side = slabs.side(), left = column * side, top = row * side;
+  const HeightSlab& slab = slabs.at(column, row);
   if (slab.is_empty()) return 0;
-  double most_m = 0;
+  double most_m = 0, lowest_m = INFINITY, highest_m = -INFINITY;
   for (const std::int64_t right : {std::int64_t{0}, side - 1}) {
     for (const std::int64_t down : {std::int64_t{0}, side - 1}) {
       const auto r = static_cast<double>(right), d = static_cast<double>(down);
+      const double middle_m = slab.middle_m(r, d);
       const double on_sector_m =
           sector.plane().height_m(static_cast<double>(left) + r, static_cast<double>(top) + d);
-      most_m = std::max(most_m, std::abs(on_sector_m - slab.middle_m(r, d)));
+      most_m = std::max(most_m, std::abs(on_sector_m - middle_m));
+      lowest_m = std::min(lowest_m, middle_m);
+      highest_m = std::max(highest_m, middle_m);
     }
   }
-  return most_m + slab.half_m;
+  const double between_corners_m =
+      std::max(sector.highest_m() - lowest_m, highest_m - sector.lowest_m());
+  return std::min(most_m, between_corners_m) + slab.half_m;
 }
 
 /// The same where all that is known of the samples is the slab they are in: in a row, what is
@@ -132,12 +157,13 @@ void raise_by_slab(const Sector& sector, const HeightSlabs& slabs, const RowSpan
 /// By blocks of samples, less those that are surely within the tolerance.
 void raise_by_blocks(const Sector& sector, const SampleField& field, double tolerance_m,
                      StarError& error) {
-  const std::int64_t side = field.slabs.side();
-  const auto over_blocks = [&](std::span<const RowSpan> spans) {
-    return for_each_block_of(spans, side, [&](std::int64_t first, std::int64_t last) {
-      const double enough_m = std::max(tolerance_m, error.most_m);
-      if (most_of_block_m(sector, field.slabs, first, spans[0].row) <= enough_m) return true;
-      return for_each_part_of(spans, first, last, [&](const RowSpan& part) {
+  for_each_part_not_clear(
+      sector.sides(), {field.columns, field.rows}, field.slack_cells, field.slabs,
+      [&](std::int64_t column, std::int64_t row) {
+        return most_of_block_m(sector, field.slabs, column, row) <=
+               std::max(tolerance_m, error.most_m);
+      },
+      [&](const RowSpan& part) {
         if (field.behind.empty()) {
           raise_by_slab(sector, field.slabs, part, error);
         } else {
@@ -145,13 +171,6 @@ void raise_by_blocks(const Sector& sector, const SampleField& field, double tole
         }
         return true;
       });
-    });
-  };
-  SlabRows rows(side, over_blocks);
-  sector.for_each_span_of(field, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-    return rows.add(row, first, last);
-  });
-  rows.end();
 }
 
 }  // namespace
@@ -161,7 +180,7 @@ StarError error_of_star(const Star& star, const Place& centre, const SampleField
   StarError error;
   const double rounding_m = field.behind.empty() ? 0 : field.behind.rounding_m();
   for (std::size_t s = 0; s < star.sector_count(); ++s) {
-    const Sector sector(centre, star.corner(s), star.corner(s + 1));
+    const Sector sector(centre, star.corner(s), star.corner(s + 1), field.slack_cells);
     if (field.slabs.empty()) {
       raise_by_rows(sector, field, error);
     } else {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "tests/hierarchy/test_meshes.h"
 
 namespace terrane::hierarchy {
@@ -86,6 +88,23 @@ TEST_F(FlatGuard, CheckStaysWithEveryMemberAfterAJoin) {
   joined.join(std::array{VertexId{12}, VertexId{13}}, VertexId{12});
   // fine vertex 13 would be dragged across its neighbours to the far corner
   EXPECT_FALSE(joined.allows(std::array{VertexId{12}}, cell(0.5, 3.5, 0)));
+}
+
+TEST_F(FlatGuard, VerdictsDoNotDependOnWhatItRefusedBefore) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> aside(-0.9, 0.9), height_m(-1.2, 1.2);
+  for (double& sample_m : field_.heights_m) sample_m = 0.5 * height_m(random);
+  MorphGuard one = guard();
+  int allowed = 0, refused = 0;
+  for (int n = 0; n < 3000; ++n) {
+    const std::uint32_t v = (n % 2 == 0 ? 6 : 12);
+    const Place target = cell(v % 5 + aside(random), v / 5 + aside(random), height_m(random));
+    const bool is_allowed = one.allows(std::array{VertexId{v}}, target);
+    EXPECT_EQ(guard().allows(std::array{VertexId{v}}, target), is_allowed) << n;
+    ++(is_allowed ? allowed : refused);
+  }
+  EXPECT_GT(allowed, 100);
+  EXPECT_GT(refused, 100);
 }
 
 }  // namespace

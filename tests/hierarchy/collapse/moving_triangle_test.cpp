@@ -127,12 +127,24 @@ TEST(MovingTriangle, AgreesOverAFieldWithALookAtOneSampleAfterTheOther) {
     for (int k = 0; k < 25; ++k) {
       const FieldSample sample{float(k % 5), float(k / 5), field.heights_m[std::size_t(k)]};
       is_each_near = is_each_near && moving.stays_within(sample, tolerance_m);
+      // what surely leaves is seen to leave
+      EXPECT_TRUE(!moving.surely_leaves(sample, tolerance_m) || !is_each_near) << n;
     }
     EXPECT_EQ(moving.stays_within(field, tolerance_m), is_each_near) << n;
+    const std::optional<FieldSample> left = moving.find_left(field, tolerance_m);
+    EXPECT_TRUE(!left || !moving.stays_within(*left, tolerance_m)) << n;
     ++(is_each_near ? sound : unsound);
   }
   EXPECT_GT(sound, 300);
   EXPECT_GT(unsound, 300);
+}
+
+TEST(MovingTriangle, SurelyLeavesNothingAsLongAsItStands) {
+  const Triangle triangle{FieldPoint{0, 4, 0}, {4, 4, 0}, {2, 0, 0}};
+  Triangle raised = triangle;
+  raised[2].height_m = 0.1;
+  EXPECT_FALSE(MovingTriangle(triangle, triangle, 0).surely_leaves({2, 2, 9}, 1));
+  EXPECT_TRUE(MovingTriangle(triangle, raised, 0).surely_leaves({2, 2, 9}, 1));
 }
 
 TEST(MovingTriangle, SeesEverySampleOnItsWay) {
