@@ -16,9 +16,12 @@ constexpr std::int64_t kBlockOfLoose_cells = 2;
 // 272 MB
 constexpr std::int64_t kMostSlabs = 17'000'000;
 
-// with more samples than that under a triangle, it pays to look at blocks of them first
-constexpr double kManySamples = 1000;
-constexpr std::int64_t kSideOfSlabs = 16;
+/// With many samples under a triangle, it pays to look at blocks of them first.
+/// \return samples along a block; 1 where it does not pay.
+std::int64_t paying_side(double samples_per_triangle) {
+  if (samples_per_triangle > 2500) return 16;
+  return samples_per_triangle > 600 ? 8 : 1;
+}
 
 bool is_before(const FieldSample& a, const FieldSample& b) {
   return std::pair(a.row, a.column) < std::pair(b.row, b.column);
@@ -154,8 +157,8 @@ Reference::Reference(const TileSamples& samples, const TileFrame& frame, double 
   } else {
     field_.heights_m = all_heights_m(samples, frame);
   }
-  const bool has_many = samples.samples_per_triangle() > kManySamples;
-  if (has_all && has_many && field_.has_grid()) field_.slabs = field_.slabs_of_grid(kSideOfSlabs);
+  const std::int64_t side = paying_side(samples.samples_per_triangle());
+  if (has_all && side > 1 && field_.has_grid()) field_.slabs = field_.slabs_of_grid(side);
   field_.slack_cells = slack_cells;
 }
 
