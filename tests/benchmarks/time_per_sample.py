@@ -1,22 +1,27 @@
 #!/usr/bin/env python3
 """Builds squares of a DEM, from small to large, and plots CPU time per sample.
 
-time_per_sample.py [--mirrored] TERRANE DEM PICTURE.svg [SIDE ...]     sides in samples
+time_per_sample.py [--mirrored] [--beside] TERRANE DEM PICTURE.svg [SIDE ...]     sides in samples
 
 The squares are from the DEM's middle; with --mirrored, its middle square of 1,000 samples is repeated,
-every other time mirrored: then squares of all sizes have the same terrain. Prints a Markdown table.
-Samples are those with data; time is that of the process and its threads.
+every other time mirrored: then squares of all sizes have the same terrain. With --beside, the last is
+built on a core of its own, and the others in turn on a second one all the while: what slows the machine
+down for some time then slows them all. Prints a Markdown table.
+Samples are those with data; time is that of the process and its threads, the mean of all builds.
 """
 
 import array
+import itertools
 import json
 import math
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 SIDES = (1000, 1450, 2000, 2900, 4100, 5800, 8200, 10000)
 PERIOD = 1000  # samples of what is mirrored
@@ -52,17 +57,54 @@ def mirror(dem, side, file):
                              header.read_text()))
 
 
-def build(terrane, square, folder):
-    """(samples with data, CPU seconds, peak memory in MB, levels)."""
-    out = folder / "tiles"
-    process = subprocess.Popen([terrane, "--quiet", "build", square, "--tolerance", "5", "--jobs",
-                                "1", "-o", out], stdout=subprocess.DEVNULL)
+def start(terrane, square, core=None):
+    """A build, on one core if it is given; its tiles go beside the square."""
+    bind = None if core is None else lambda: os.sched_setaffinity(0, {core})
+    return subprocess.Popen([terrane, "--quiet", "build", square, "--tolerance", "5", "--jobs", "1",
+                             "-o", tiles_of(square)], stdout=subprocess.DEVNULL, preexec_fn=bind)
+
+
+def tiles_of(square):
+    return square.with_suffix("")
+
+
+def has_ended(process):
+    return os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None
+
+
+def finish(process, square):
+    """(samples with data, CPU seconds, peak memory in MB, levels); removes the tiles."""
     _, status, usage = os.wait4(process.pid, 0)
     if status != 0:
         sys.exit(f"{square}: could not be built")
-    summary = json.loads((out / "terrane.json").read_text())
+    summary = json.loads((tiles_of(square) / "terrane.json").read_text())
+    shutil.rmtree(tiles_of(square))
     return (summary["dem"]["samples_with_data"], usage.ru_utime + usage.ru_stime,
             usage.ru_maxrss / 1024, len(summary["levels"]))
+
+
+def build_one_by_one(terrane, squares):
+    for square in squares:
+        yield square, [finish(start(terrane, square), square)]
+
+
+def build_beside(terrane, squares):
+    """Builds all but the last again and again until that one is done."""
+    *others, largest = squares
+    first_core, second_core, *_ = sorted(os.sched_getaffinity(0))
+    built = {square: [] for square in squares}
+    long_one = start(terrane, largest, second_core)
+    for square in itertools.cycle(others):
+        process = start(terrane, square, first_core)
+        while not has_ended(process) and not has_ended(long_one):
+            time.sleep(0.05)
+        if has_ended(long_one):
+            process.kill()
+            process.wait()
+            break
+        built[square].append(finish(process, square))
+    built[largest].append(finish(long_one, largest))
+    return built.items()
 
 
 def svg(points):
@@ -101,19 +143,24 @@ def svg(points):
 
 def main(*arguments):
     write_square = mirror if "--mirrored" in arguments else cut
-    terrane, dem, picture, *sides = [a for a in arguments if a != "--mirrored"]
-    print("| square | samples with data | levels | CPU time | per sample | peak memory |\n"
-          "|---|---|---|---|---|---|", flush=True)
+    build_all = build_beside if "--beside" in arguments else build_one_by_one
+    terrane, dem, picture, *sides = [a for a in arguments if not a.startswith("--")]
+    print("| square | samples with data | levels | builds | CPU time | per sample | peak memory |\n"
+          "|---|---|---|---|---|---|---|", flush=True)
     points = []
-    for side in map(int, sides or SIDES):
-        with tempfile.TemporaryDirectory() as folder:
-            square = pathlib.Path(folder) / "square.bil"
-            write_square(dem, side, square)
-            samples, seconds, memory_mb, levels = build(terrane, square, pathlib.Path(folder))
-        points.append((samples, seconds / samples * 1e6))
-        print(f"| {side} | {samples:,} | {levels} | {seconds:.1f} s | {points[-1][1]:.2f} us | "
-              f"{memory_mb:.0f} MB |", flush=True)
-        pathlib.Path(picture).write_text(svg(points))
+    with tempfile.TemporaryDirectory() as folder:
+        squares = [pathlib.Path(folder) / f"{side}.bil" for side in map(int, sides or SIDES)]
+        for side, square in zip(sides or SIDES, squares):
+            write_square(dem, int(side), square)
+        for square, builds in build_all(terrane, squares):
+            if not builds:
+                sys.exit(f"{square}: not built before the last one was done")
+            samples, _, memory_mb, levels = builds[0]
+            seconds = sum(build[1] for build in builds) / len(builds)
+            points.append((samples, seconds / samples * 1e6))
+            print(f"| {square.stem} | {samples:,} | {levels} | {len(builds)} | {seconds:.1f} s | "
+                  f"{points[-1][1]:.2f} us | {memory_mb:.0f} MB |", flush=True)
+            pathlib.Path(picture).write_text(svg(points))
 
 
 if __name__ == "__main__":
