@@ -12,8 +12,11 @@ namespace terrane::hierarchy {
 
 /// Calls visit(span) for the parts of rows between sides that lie in one block of slabs each, less
 /// those blocks that are clear: rows of blocks from the top, in each the blocks from the left.
-/// Stops and returns false as soon as visit does. \param shape     of the samples. \param is_clear
-/// called with the column and row of a block.
+/// Stops and returns false as soon as visit does.
+///
+/// \param shape        of the grid of samples; columns and rows count from its first sample.
+/// \param slack_cells  samples this near to the sides count as between them.
+/// \param is_clear     called with the column and row of a block, counted in blocks.
 template <class IsClear, class Visit>
 bool for_each_part_not_clear(std::span<const FieldSide> sides, const GridShape& shape,
                              double slack_cells, const HeightSlabs& slabs, const IsClear& is_clear,

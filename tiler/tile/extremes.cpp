@@ -14,7 +14,6 @@ namespace terrane::tiler {
 namespace {
 
 using hierarchy::FieldSample;
-
 using hierarchy::HalfLanes;
 using hierarchy::HalfMask;
 
