@@ -1,5 +1,9 @@
 import {defineConfig} from 'vitest/config';
 
 export default defineConfig({
-  test: {include: ['test/core/*.test.ts', 'test/volume/*.test.ts'], environment: 'node'},
+  test: {
+    include: ['test/core/*.test.ts', 'test/volume/*.test.ts'],
+    benchmark: {include: ['test/core/*.bench.ts']},
+    environment: 'node',
+  },
 });

@@ -309,10 +309,10 @@ export class Viewer {
     const nowMs = performance.now();
     const elapsedMs = nowMs - this.lastMs;
     this.lastMs = nowMs;
-    // a long pause means that nothing moved, not that drawing was slow
-    const wasMoving = this.isMoving && elapsedMs < 1000;
-    this.frameMs = wasMoving ? 0.9 * (this.frameMs ?? elapsedMs) + 0.1 * elapsedMs : undefined;
-    const frame = this.redraw(wasMoving ? Math.min(0.1, elapsedMs / 1000) : 1 / 60);
+    // a long pause may be that of a page in the background, not of slow drawing
+    const isTimed = this.isMoving && elapsedMs < 1000;
+    this.frameMs = isTimed ? 0.9 * (this.frameMs ?? elapsedMs) + 0.1 * elapsedMs : undefined;
+    const frame = this.redraw(this.isMoving ? Math.min(0.1, elapsedMs / 1000) : 1 / 60);
     this.options.onFrame();
     this.retryLater();
     if (this.isMoving) this.invalidate();

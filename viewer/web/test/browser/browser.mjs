@@ -6,6 +6,7 @@ import {chromium} from 'playwright-core';
 
 const kPicture = {width: 640, height: 480};
 const kReadyMs = 120000;
+const kComesTrueMs = 60000;
 
 // no traffic of the browser's own
 const kFlags = [
@@ -90,6 +91,19 @@ export async function ready(page) {
   });
   await Promise.race([page.evaluate(() => window.terrane.ready()), late]);
   clearTimeout(timer);
+}
+
+/**
+ * True as soon as something holds, which it is asked again and again; false if it does not within a minute. No fixed wait
+ * will do: a frame moves a camera by a tenth of a second at most, however long it took to draw.
+ */
+export async function comesTrue(holds) {
+  const endMs = Date.now() + kComesTrueMs;
+  while (!(await holds())) {
+    if (Date.now() > endMs) return false;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+  return true;
 }
 
 /** Runs something in a fresh browser, which renders in software unless `gpu` is true. */

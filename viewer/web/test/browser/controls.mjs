@@ -8,7 +8,7 @@ import {join} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {parseArgs} from 'node:util';
 import {writeTileset} from '../synthetic_tiles.mjs';
-import {check, failures, open, ready, withBrowser} from './browser.mjs';
+import {check, comesTrue, failures, open, ready, withBrowser} from './browser.mjs';
 import {serveFolders} from './serve_folder.mjs';
 
 const {values: options} = parseArgs({
@@ -17,9 +17,19 @@ const {values: options} = parseArgs({
 const kDist = process.env.TERRANE_WEB_DIST ?? fileURLToPath(new URL('../../dist', import.meta.url));
 const kPose = {eye: [-2300, -3400, 2200], headingDeg: 20, pitchDeg: -45};
 const [kX, kY] = [420, 300];
+const kProfile = /km|m, [+−]\d+ m; up \d+ m, down \d+ m/;
+const kPermalink = [/look=slope/, /contours=1/, /theme=dark/, /camera=/];
 
 const poseOf = (page) => page.evaluate(() => window.terrane.pose());
 const far = (a, b) => Math.hypot(...a.eye.map((value, k) => value - b.eye[k]));
+
+/** Waits until the camera has come to rest. */
+const rests = (page) =>
+  comesTrue(async () => {
+    const before = await poseOf(page);
+    await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(resolve)));
+    return far(before, await poseOf(page)) === 0;
+  });
 
 async function settle(page, pose = kPose) {
   await page.evaluate((p) => window.terrane.setPose(p), pose);
@@ -53,7 +63,8 @@ async function useMouse(page) {
   await settle(page);
   await placeAt(page, kX, kY);
   await page.mouse.wheel(0, -300);
-  await page.waitForTimeout(700);
+  await comesTrue(async () => far(kPose, await poseOf(page)) > 300);
+  await rests(page);
   await ready(page);
   const zoomed = await placeAt(page, kX, kY);
   const came = far(kPose, await poseOf(page));
@@ -64,8 +75,10 @@ async function useMouse(page) {
 
   await settle(page);
   await page.mouse.dblclick(kX, kY);
-  await page.waitForTimeout(700);
-  check(far(kPose, await poseOf(page)) > 800, 'a double click comes closer');
+  check(
+    await comesTrue(async () => far(kPose, await poseOf(page)) > 800),
+    'a double click comes closer',
+  );
 
   await settle(page);
   await page.mouse.move(kX, kY);
@@ -93,29 +106,23 @@ async function useKeys(page) {
     const [last, shift] = [key.split('+').at(-1), key.startsWith('Shift')];
     if (shift) await page.keyboard.down('Shift');
     await page.keyboard.down(last);
-    await page.waitForTimeout(300);
+    check(await comesTrue(() => hasMoved(page)), `${key} ${what}`);
     await page.keyboard.up(last);
     if (shift) await page.keyboard.up('Shift');
-    const now = await poseOf(page);
-    const moved = far(kPose, now) + Math.abs(now.headingDeg - kPose.headingDeg);
-    check(moved > 5, `${key} ${what}`);
   }
   await page.keyboard.press('f');
-  check(
-    (await page.getAttribute('#fly', 'aria-pressed')) === 'true' || (await flies(page)),
-    'F flies',
-  );
+  const flies = () => page.getAttribute('#fly', 'aria-pressed');
+  check(await comesTrue(async () => (await flies()) === 'true'), 'F flies');
   await page.keyboard.press('f');
   await page.keyboard.press('h');
-  await page.waitForTimeout(1300);
-  const home = await poseOf(page);
-  check(Math.abs(home.headingDeg) < 0.1 && home.eye[1] < -4000, 'H shows the whole terrain');
+  const isHome = ({headingDeg, eye}) => Math.abs(headingDeg) < 0.1 && eye[1] < -4000;
+  check(await comesTrue(async () => isHome(await poseOf(page))), 'H shows the whole terrain');
 }
 
-const flies = async (page) => {
-  await page.waitForTimeout(200);
-  return (await page.getAttribute('#fly', 'aria-pressed')) === 'true';
-};
+async function hasMoved(page) {
+  const now = await poseOf(page);
+  return far(kPose, now) + Math.abs(now.headingDeg - kPose.headingDeg) > 5;
+}
 
 async function stayAboveGround(page) {
   let lowest = Infinity;
@@ -187,9 +194,9 @@ async function useTools(page) {
   await page.click('#measure');
   await page.mouse.click(kX, kY);
   await page.mouse.click(kX - 120, kY + 60);
-  await page.waitForTimeout(100);
-  const text = await page.textContent('#profile-text');
-  check(/km|m, [+−]\d+ m; up \d+ m, down \d+ m/.test(text), `a profile: ${text}`);
+  const profile = () => page.textContent('#profile-text');
+  const holds = await comesTrue(async () => kProfile.test(await profile()));
+  check(holds, `a profile: ${await profile()}`);
   check((await page.locator('#profile-plot polygon').count()) === 1, 'and its plot');
   await page.click('#profile-close');
 
@@ -200,15 +207,9 @@ async function useTools(page) {
   await page.selectOption('#look', 'slope');
   await page.check('#contours');
   await page.click('#theme');
-  await page.waitForTimeout(500);
-  const {hash} = new URL(page.url());
-  check(
-    /look=slope/.test(hash) &&
-      /contours=1/.test(hash) &&
-      /theme=dark/.test(hash) &&
-      /camera=/.test(hash),
-    `permalink ${hash}`,
-  );
+  const hash = () => new URL(page.url()).hash;
+  const isWhole = await comesTrue(() => kPermalink.every((part) => part.test(hash())));
+  check(isWhole, `permalink ${hash()}`);
   const pose = await poseOf(page);
   await page.reload();
   await page.waitForFunction(() => window.terrane);
@@ -285,10 +286,8 @@ function lowestContrast() {
 /** The page flies along a path that a file gives. */
 async function playPath(context, url) {
   const {page} = await open(context, `${url}?path=path.json`, 8);
-  await page.waitForTimeout(900);
-  await ready(page);
-  const {eye, headingDeg} = await poseOf(page);
-  check(Math.abs(eye[0] - 100) < 1e-6 && headingDeg === 30, 'a path is flown to its end');
+  const isAtEnd = ({eye, headingDeg}) => Math.abs(eye[0] - 100) < 1e-6 && headingDeg === 30;
+  check(await comesTrue(async () => isAtEnd(await poseOf(page))), 'a path is flown to its end');
   await page.close();
 }
 

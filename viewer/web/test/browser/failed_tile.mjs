@@ -7,7 +7,7 @@ import {join} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {parseArgs} from 'node:util';
 import {writeTileset} from '../synthetic_tiles.mjs';
-import {check, failures, open, ready, withBrowser} from './browser.mjs';
+import {check, comesTrue, failures, open, ready, withBrowser} from './browser.mjs';
 import {serveFolders} from './serve_folder.mjs';
 
 const {values: options} = parseArgs({
@@ -15,17 +15,18 @@ const {values: options} = parseArgs({
 });
 const kDist = process.env.TERRANE_WEB_DIST ?? fileURLToPath(new URL('../../dist', import.meta.url));
 /** Below the camera. */
-const kTile = join('tiles', '0', '1', '6.glb');
+const kAddress = 'tiles/0/1/6.glb';
 const kCamera = {eye: [-2400, -2600, 1200], target: [-2400, -2400, 500]};
 
 async function expectParent(page) {
   await page.waitForFunction(() => window.terrane.stats().failed > 0);
-  // all the rest arrives meanwhile
-  await page.waitForTimeout(1500);
-  const message = await page.textContent('#error');
-  check(message.includes('tiles/0/1/6.glb: status 404'), `the page says: ${message}`);
-  const {levels, shownTolerancePx} = await page.evaluate(() => window.terrane.stats());
-  check(levels[1] > 0, `its parent is shown: ${JSON.stringify(levels)}`);
+  const message = () => page.textContent('#error');
+  const isSaid = await comesTrue(async () => (await message()).includes(`${kAddress}: status 404`));
+  check(isSaid, `the page says: ${await message()}`);
+  const stats = () => page.evaluate(() => window.terrane.stats());
+  const isParentShown = await comesTrue(async () => (await stats()).levels[1] > 0);
+  const {levels, shownTolerancePx} = await stats();
+  check(isParentShown, `its parent is shown: ${JSON.stringify(levels)}`);
   check(shownTolerancePx > 1, `and what error they have: ${shownTolerancePx.toFixed(1)} px`);
   const seams = await page.evaluate(() => window.terrane.checkSeams());
   check(seams.pairs > 0 && seams.mismatches === 0, `${seams.pairs} seams, none open`);
@@ -40,13 +41,13 @@ async function expectRecovery(page) {
 
 async function run(folder) {
   await writeTileset(folder);
-  await rename(join(folder, kTile), join(folder, 'away.glb'));
+  await rename(join(folder, kAddress), join(folder, 'away.glb'));
   const server = await serveFolders([folder, kDist]);
   await withBrowser(options.chromium, async (context) => {
     const {page} = await open(context, server.url, 1);
     await page.evaluate((camera) => window.terrane.setCamera(camera), kCamera);
     await expectParent(page);
-    await rename(join(folder, 'away.glb'), join(folder, kTile));
+    await rename(join(folder, 'away.glb'), join(folder, kAddress));
     await expectRecovery(page);
   });
   server.close();

@@ -4,6 +4,7 @@ import {kOctaveS} from '../../src/core/holdback';
 import {Streamer, type Frame, type View} from '../../src/core/streamer';
 import {tilesOf, type Tile} from '../../src/core/tileset';
 import {length, subtract, type Vec3} from '../../src/core/vec3';
+import {flightOverManyTiles} from './flight_over_many_tiles';
 import {kLeafM, quadtree} from './quadtree';
 
 const kTop = 3;
@@ -63,6 +64,16 @@ function isWhole(cut: readonly Tile[]): boolean {
 function shownDistance(place: Vec3, {eye, holdbacks}: Frame): number {
   const held = holdbacks.map(({bounds, heightM}) => heightM - distanceToBounds(bounds, place));
   return Math.max(length(subtract(place, eye)), ...held);
+}
+
+/** Notes the keys of the tiles whose boxes are read from now on. */
+function watch(tiles: readonly Tile[]): Set<string> {
+  const looked = new Set<string>();
+  for (const tile of tiles) {
+    const {box, key} = tile;
+    Object.defineProperty(tile, 'box', {get: () => looked.add(key) && box});
+  }
+  return looked;
 }
 
 describe('Streamer', () => {
@@ -157,4 +168,13 @@ describe('Streamer', () => {
     }
     expect(world.dropped.length).toBeGreaterThan(0);
   });
+
+  it('looks at no tile but those that it wants, though there are 100,000', async () => {
+    const {tiles, fly} = await flightOverManyTiles();
+    expect(tiles.length).toBeGreaterThan(100000);
+    const looked = watch(tiles);
+    const {wanted, settled} = fly(60);
+    expect(settled).toBe(true);
+    expect(looked.size).toBe(wanted);
+  }, 60000);
 });
