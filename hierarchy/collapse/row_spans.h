@@ -115,12 +115,10 @@ class SpansBetween {
   std::size_t count_;
 };
 
-/// Calls visit(row, first_column, last_column) for each row of SpansBetween that has samples. Stops
-/// and returns false as soon as visit does.
+/// Calls visit(row, first_column, last_column) for each row that has samples. Stops and returns
+/// false as soon as visit does.
 template <class Visit>
-bool for_each_span_between(std::span<const FieldSide> sides, const GridShape& shape,
-                           double slack_cells, Visit&& visit) {
-  const SpansBetween spans(sides, shape, slack_cells);
+bool for_each_span_of(const SpansBetween& spans, Visit&& visit) {
   for (std::int64_t row = spans.first_row(); row <= spans.last_row(); ++row) {
     const RowSpan span = spans.of_row(row);
     if (!span.is_empty() && !visit(row, span.first, span.last)) return false;
@@ -128,7 +126,14 @@ bool for_each_span_between(std::span<const FieldSide> sides, const GridShape& sh
   return true;
 }
 
-/// The same for the samples under a triangle.
+/// The same for the samples between sides.
+template <class Visit>
+bool for_each_span_between(std::span<const FieldSide> sides, const GridShape& shape,
+                           double slack_cells, Visit&& visit) {
+  return for_each_span_of(SpansBetween(sides, shape, slack_cells), visit);
+}
+
+/// The same for those under a triangle.
 template <class Visit>
 bool for_each_span(const FieldPoint& a, const FieldPoint& b, const FieldPoint& c,
                    const GridShape& shape, double slack_cells, Visit&& visit) {
@@ -178,29 +183,11 @@ class HullSides {
   std::size_t count_ = 0;
 };
 
-/// As for_each_span(), for the convex hull of 3 to 6 points; if that is small, for its box.
+/// The same for those in the convex hull of 3 to 6 points.
 template <class Visit>
 bool for_each_span_of_hull(std::span<const FieldPoint> points, const GridShape& shape,
                            double slack_cells, Visit&& visit) {
-  // columns that cost less than to find out which of them to leave out
-  constexpr double kFewColumns = 8;
-  const auto [left, right] = std::ranges::minmax(points, {}, &FieldPoint::column);
-  if (right.column - left.column >= kFewColumns) {
-    return for_each_span_between(HullSides(points).sides(), shape, slack_cells, visit);
-  }
-  const auto [top, bottom] = std::ranges::minmax(points, {}, &FieldPoint::row);
-  const auto from = [&](double at) {
-    return std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(at - slack_cells)));
-  };
-  const auto to = [&](double at, std::int64_t count) {
-    return std::min(count - 1, static_cast<std::int64_t>(std::floor(at + slack_cells)));
-  };
-  const std::int64_t first = from(left.column), last = to(right.column, shape.columns);
-  if (first > last) return true;
-  for (std::int64_t row = from(top.row); row <= to(bottom.row, shape.rows); ++row) {
-    if (!visit(row, first, last)) return false;
-  }
-  return true;
+  return for_each_span_between(HullSides(points).sides(), shape, slack_cells, visit);
 }
 
 }  // namespace terrane::hierarchy

@@ -1,12 +1,8 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "core/height_grid.h"
@@ -73,27 +69,21 @@ struct SampleField {
   }
 };
 
-/// A point counted in blocks of a reduced field, from the middle of the first.
-inline FieldPoint in_blocks(const FieldPoint& p, const SampleField& field) {
-  const auto side = static_cast<double>(field.block_cells);
-  return {(p.column - (side - 1) / 2) / side, (p.row - (side - 1) / 2) / side, 0};
-}
-
 /// Calls visit(number of the first sample, number after the last) for the samples of the blocks of
-/// a reduced field that may lie between sides, row by row of blocks; the sides are counted in
-/// blocks. Stops and returns false as soon as visit does.
+/// a reduced field that may lie between sides, row by row of blocks. Stops and returns false as
+/// soon as visit does.
 template <class Visit>
 bool for_each_kept_run_between(std::span<const FieldSide> sides, const SampleField& field,
                                double slack_cells, Visit&& visit) {
   const std::int64_t row_of_blocks = field.blocks().columns;
   // half a block's diagonal takes in whatever lies in a block
   const double reach = 0.75 + slack_cells / static_cast<double>(field.block_cells);
-  return for_each_span_between(
-      sides, field.blocks(), reach, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
-        const auto begin = static_cast<std::size_t>(row * row_of_blocks + first);
-        const auto end = static_cast<std::size_t>(row * row_of_blocks + last + 1);
-        return visit(std::size_t{field.first_kept[begin]}, std::size_t{field.first_kept[end]});
-      });
+  const SpansBetween blocks(sides, field.blocks(), reach, field.block_cells);
+  return for_each_span_of(blocks, [&](std::int64_t row, std::int64_t first, std::int64_t last) {
+    const auto begin = static_cast<std::size_t>(row * row_of_blocks + first);
+    const auto end = static_cast<std::size_t>(row * row_of_blocks + last + 1);
+    return visit(std::size_t{field.first_kept[begin]}, std::size_t{field.first_kept[end]});
+  });
 }
 
 /// Calls visit(number of the sample, sample) for each sample of the field under the triangle or
@@ -129,9 +119,7 @@ bool for_each_sample(const FieldPoint& a, const FieldPoint& b, const FieldPoint&
     return turn * beside(p, q, s.column, s.row) < nearest;
   };
   const double ab = -reach(a, b), bc = -reach(b, c), ca = -reach(c, a);
-  const FieldPoint corners[] = {in_blocks(a, field), in_blocks(b, field), in_blocks(c, field)};
-  const FieldSide sides[] = {
-      {&corners[0], &corners[1]}, {&corners[1], &corners[2]}, {&corners[2], &corners[0]}};
+  const FieldSide sides[] = {{&a, &b}, {&b, &c}, {&c, &a}};
   return for_each_kept_run_between(
       sides, field, slack_cells, [&](std::size_t first, std::size_t end) {
         for (std::size_t k = first; k < end; ++k) {
@@ -149,15 +137,10 @@ bool for_each_sample(const FieldPoint& a, const FieldPoint& b, const FieldPoint&
 template <class Visit>
 bool for_each_kept_run_of_hull(std::span<const FieldPoint> points, const SampleField& field,
                                double slack_cells, Visit&& visit) {
-  std::array<FieldPoint, 6> counted_in_blocks;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    counted_in_blocks[k] = in_blocks(points[k], field);
-  }
-  const HullSides hull(std::span<const FieldPoint>(counted_in_blocks).first(points.size()));
-  return for_each_kept_run_between(
-      hull.sides(), field, slack_cells, [&](std::size_t first, std::size_t end) {
-        return visit(std::span(field.kept).subspan(first, end - first));
-      });
+  const auto visit_run = [&](std::size_t first, std::size_t end) {
+    return visit(std::span(field.kept).subspan(first, end - first));
+  };
+  return for_each_kept_run_between(HullSides(points).sides(), field, slack_cells, visit_run);
 }
 
 }  // namespace terrane::hierarchy

@@ -139,6 +139,29 @@ TEST(MovingTriangle, AgreesOverAFieldWithALookAtOneSampleAfterTheOther) {
   EXPECT_GT(unsound, 300);
 }
 
+TEST(MovingTriangle, SlabsChangeNoVerdict) {
+  RandomTriangles random;
+  int sound = 0, unsound = 0;
+  for (int n = 0; n < 6000; ++n) {
+    const Triangle from = random.next();
+    Triangle to = random.next();
+    if (n % 3 > 0) to[2] = from[2];
+    if (n % 3 > 1) to[1] = from[1];
+    if (!stays_up(from, to)) continue;
+    const double tolerance_m = 3 + random.point().column;
+    // with a slack, samples beside short sides count from farther away than those beside long ones
+    SampleField field{.columns = 9, .rows = 9, .heights_m = {}, .slack_cells = 0.3};
+    for (int k = 0; k < 81; ++k) field.heights_m.push_back(random.point().height_m / 4 + 6);
+    const MovingTriangle moving(from, to, field.slack_cells);
+    const bool stays = moving.stays_within(field, tolerance_m);
+    field.slabs = field.slabs_of_grid(4);
+    EXPECT_EQ(moving.stays_within(field, tolerance_m), stays) << n;
+    ++(stays ? sound : unsound);
+  }
+  EXPECT_GT(sound, 300);
+  EXPECT_GT(unsound, 300);
+}
+
 TEST(MovingTriangle, SurelyLeavesNothingAsLongAsItStands) {
   const Triangle triangle{FieldPoint{0, 4, 0}, {4, 4, 0}, {2, 0, 0}};
   Triangle raised = triangle;
