@@ -52,6 +52,10 @@ double sampled_error_m(const Triangle& from, const Triangle& to, const FieldSamp
   return worst_m;
 }
 
+struct Movement {
+  Triangle from, to;
+};
+
 class RandomTriangles {
  public:
   Triangle next() {
@@ -60,9 +64,19 @@ class RandomTriangles {
       if (doubled_area(t[0], t[1], t[2]) > 0.5) return t;
     }
   }
+  /// Keeps an area at all times; all three corners move, or two, or one.
+  Movement next_movement() {
+    for (;;) {
+      Movement movement{next(), next()};
+      const int moving = 1 + number_++ % 3;
+      for (int k = moving; k < 3; ++k) movement.to[k] = movement.from[k];
+      if (stays_up(movement.from, movement.to)) return movement;
+    }
+  }
   FieldPoint point() { return {uniform_(random_), uniform_(random_), 4 * uniform_(random_)}; }
 
  private:
+  int number_ = 0;
   std::mt19937 random_{7};
   std::uniform_real_distribution<double> uniform_{0, 4};
 };
@@ -71,10 +85,7 @@ TEST(MovingTriangle, AgreesWithALookAtManyMoments) {
   RandomTriangles random;
   int sound = 0, unsound = 0;
   for (int n = 0; n < 3000; ++n) {
-    Triangle from = random.next(), to = random.next();
-    if (n % 3 > 0) to[2] = from[2];
-    if (n % 3 > 1) to[1] = from[1];
-    if (!stays_up(from, to)) continue;
+    const auto [from, to] = random.next_movement();
     const FieldPoint s = random.point();
     const FieldSample sample{float(s.column), float(s.row), s.height_m};
     const double worst_m = sampled_error_m(from, to, sample);
@@ -114,11 +125,7 @@ TEST(MovingTriangle, AgreesOverAFieldWithALookAtOneSampleAfterTheOther) {
   RandomTriangles random;
   int sound = 0, unsound = 0;
   for (int n = 0; n < 3000; ++n) {
-    const Triangle from = random.next();
-    Triangle to = random.next();
-    if (n % 3 > 0) to[2] = from[2];
-    if (n % 3 > 1) to[1] = from[1];
-    if (!stays_up(from, to)) continue;
+    const auto [from, to] = random.next_movement();
     const double tolerance_m = 2 + random.point().column;
     SampleField field{5, 5, {}};
     for (int k = 0; k < 25; ++k) field.heights_m.push_back(random.point().height_m / 4 + 6);
@@ -143,11 +150,7 @@ TEST(MovingTriangle, SlabsChangeNoVerdict) {
   RandomTriangles random;
   int sound = 0, unsound = 0;
   for (int n = 0; n < 6000; ++n) {
-    const Triangle from = random.next();
-    Triangle to = random.next();
-    if (n % 3 > 0) to[2] = from[2];
-    if (n % 3 > 1) to[1] = from[1];
-    if (!stays_up(from, to)) continue;
+    const auto [from, to] = random.next_movement();
     const double tolerance_m = 3 + random.point().column;
     // with a slack, samples beside short sides count from farther away than those beside long ones
     SampleField field{.columns = 9, .rows = 9, .heights_m = {}, .slack_cells = 0.3};
