@@ -20,6 +20,8 @@ const kCamera = {eye: [-2400, -2600, 1200], target: [-2400, -2400, 500]};
 
 async function expectParent(page) {
   await page.waitForFunction(() => window.terrane.stats().failed > 0);
+  // the more of the rest has arrived, the more there is to see; what is checked holds before, too
+  await page.waitForTimeout(1500);
   const message = () => page.textContent('#error');
   const isSaid = await comesTrue(async () => (await message()).includes(`${kAddress}: status 404`));
   check(isSaid, `the page says: ${await message()}`);
